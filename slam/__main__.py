@@ -1,0 +1,5 @@
+"""`python -m slam` is `roomsketch`."""
+
+from slam.cli import main
+
+main()
