@@ -1,0 +1,209 @@
+"""The contour: readings joined by filler points into one connected boundary (Flynn 1988, §3.2).
+
+Every point keeps where it came from, and every edge says whether it is surface or only a line of sight.
+"""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+from shapely import Polygon
+
+from frontend.compiled import compiled
+from frontend.fusion import FusedScan, ReadingKind
+from frontend.rigid_motion import transform
+from frontend.scan import Booleans, Floats, Integers
+from frontend.surface import Surface, line_fits
+
+
+class ContourKind(IntEnum):
+    """Where a point of the contour came from."""
+
+    MEASURED = 0
+    FILLER = 1
+    NO_RETURN = 2
+    DOOR_ARC = 3
+    SIDE = 4
+    REJECTED = 5
+
+
+class EdgeKind(IntEnum):
+    """Why two points of the contour are joined."""
+
+    REAL = 0
+    OCCLUSION = 1
+    NO_RETURN = 2
+    SIDE = 3
+    DOOR_ARC = 4
+
+
+@dataclass(frozen=True)
+class ContourSettings:
+    """Opinions of the contour."""
+
+    filler_spacing: float = 0.1  # metres between filler points; larger is coarser and cheaper
+    least_grazing: float = 0.35  # radians a surface leaves the beam at; larger calls more steep walls occlusions
+    noise_gate: float = 4.0  # standard deviations; larger joins more depth steps into surfaces
+    longest_gap: float = 2.0  # metres two readings of one straight wall may lie apart; larger trusts bare grazing walls
+    surface_reach: int = 3  # beams to each side of a line fit; larger smooths more and rounds corners
+    surface_thickness: float = 0.04  # metres at least; larger keeps rougher surfaces for registration
+
+
+@dataclass(frozen=True, eq=False)
+class Contour:
+    """The boundary of the free space of one scan, counter-clockwise, in the robot's frame.
+
+    points: (m, 2). kinds: (m,) ContourKind. edge_kinds: (m,) EdgeKind of the edge from point i to i + 1, cyclic.
+    reading: (m,) index into the scan; fillers and the sensor's origin carry the reading before them.
+    arc_length: (m,) metres from the first point. normals: (m, 2) facing the sensor on measured surface, else nan.
+    spread: (m,) standard deviation along the beam; thickness: (m,) of the surface around it, else nan; metres.
+    vertices: (v,) the points that are no filler: the same boundary with fewer points.
+    """
+
+    points: Floats
+    kinds: NDArray[np.uint8]
+    edge_kinds: NDArray[np.uint8]
+    reading: Integers
+    arc_length: Floats
+    normals: Floats
+    spread: Floats
+    thickness: Floats
+    origin: Floats
+    surface_thickness: float
+
+    @property
+    def vertices(self) -> Integers:
+        """Indices of the points that are no filler."""
+        return np.flatnonzero(self.kinds != ContourKind.FILLER)
+
+    @property
+    def free_space(self) -> Polygon:
+        """The star-shaped polygon inside the contour, in the robot's frame."""
+        return Polygon(self.points[self.vertices])
+
+    def surface(self) -> Surface:
+        """The measured points with a thin line through them, for registration."""
+        kept = np.flatnonzero(self.thickness <= self.surface_thickness)
+        return Surface(
+            self.points[kept],
+            self.normals[kept],
+            np.maximum(self.thickness[kept], self._across(kept)),
+            self.reading[kept],
+        )
+
+    def _across(self, kept: Integers) -> Floats:
+        """The noise along the beam, seen across the surface."""
+        beams = self.points[kept] - self.origin
+        beams /= np.linalg.norm(beams, axis=1, keepdims=True)
+        return np.asarray(self.spread[kept] * np.abs(np.sum(beams * self.normals[kept], axis=1)))
+
+
+def trace(fused: FusedScan, settings: ContourSettings) -> Contour:
+    """Join the readings in order, fill the gaps, and say of every edge what it is."""
+    ends = fused.ranges[:, None] * np.column_stack([np.cos(fused.bearings), np.sin(fused.bearings)])
+    joints = _edges_between(fused, ends, settings)
+    normals, thickness = line_fits(ends, joints == EdgeKind.REAL, settings.surface_reach, np.zeros(2))
+    corners, kinds, edges, readings = ends, _point_kinds(fused.kinds), joints, np.arange(ends.shape[0])
+    spread = fused.spread
+    if not fused.scan.full_turn:  # the view ends at the sensor, on both sides
+        corners, kinds = np.vstack([ends, np.zeros(2)]), np.append(kinds, np.uint8(ContourKind.SIDE))
+        edges, readings = np.append(joints, np.uint8(EdgeKind.SIDE)), np.append(readings, readings[-1])
+        spread = np.append(spread, 0.0)
+    fillers = _filler_counts(corners, edges, settings.filler_spacing)
+    owner = np.repeat(np.arange(corners.shape[0]), fillers + 1)
+    step = np.arange(owner.size) - np.repeat(np.cumsum(fillers + 1) - fillers - 1, fillers + 1)
+    following = np.roll(corners, -1, axis=0)[owner]
+    share = (step / (fillers[owner] + 1))[:, None]
+    points = (1 - share) * corners[owner] + share * following
+    mount = np.array(fused.scan.sensor.mount)
+    placed = transform(points, mount)
+    on_reading = (step == 0) & (owner < ends.shape[0])
+    return Contour(
+        points=placed,
+        kinds=np.where(step == 0, kinds[owner], ContourKind.FILLER).astype(np.uint8),
+        edge_kinds=edges[owner],
+        reading=readings[owner],
+        arc_length=np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(placed, axis=0), axis=1))]),
+        normals=_at(transform(normals, np.array([0.0, 0.0, mount[2]])), owner, on_reading),
+        spread=spread[owner],
+        thickness=_at(thickness, owner, on_reading),
+        origin=mount[:2],
+        surface_thickness=max(settings.surface_thickness, 2 * fused.scan.sensor.range_noise),
+    )
+
+
+def _point_kinds(kinds: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    names = np.empty(len(ReadingKind), dtype=np.uint8)
+    for kind in ReadingKind:
+        names[kind] = ContourKind[kind.name]
+    return names[kinds]
+
+
+def _at(values: Floats, owner: Integers, chosen: Booleans) -> Floats:
+    """Values (m, …) of the readings where chosen (m,), nan elsewhere."""
+    spread_out = np.full((owner.size, *values.shape[1:]), np.nan)
+    spread_out[chosen] = values[owner[chosen]]
+    return spread_out
+
+
+def _filler_counts(corners: Floats, edges: NDArray[np.uint8], spacing: float) -> Integers:
+    """Fillers (n,) after each corner: none along the sides of the view, which are no boundary of anything."""
+    lengths = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
+    counts = np.maximum(np.ceil(lengths / spacing) - 1, 0).astype(np.int64)
+    counts[edges == EdgeKind.SIDE] = 0
+    return counts
+
+
+def _edges_between(fused: FusedScan, ends: Floats, settings: ContourSettings) -> NDArray[np.uint8]:
+    """EdgeKind (n,) of the edge from each reading to the next; the last one closes the turn or is a side."""
+    kinds, following = fused.kinds, np.roll(fused.kinds, -1)
+    edges = np.full(kinds.size, EdgeKind.OCCLUSION, dtype=np.uint8)
+    continuous = surface_steps(
+        fused.bearings, ends, fused.spread * settings.noise_gate, settings.least_grazing, settings.longest_gap
+    )
+    measured = kinds == ReadingKind.MEASURED
+    edges[continuous & measured & np.roll(measured, -1)] = EdgeKind.REAL
+    edges[(kinds == ReadingKind.NO_RETURN) | (following == ReadingKind.NO_RETURN)] = EdgeKind.NO_RETURN
+    edges[(kinds == ReadingKind.DOOR_ARC) & (following == ReadingKind.DOOR_ARC)] = EdgeKind.DOOR_ARC
+    if not fused.scan.full_turn:
+        edges[-1] = EdgeKind.SIDE
+    return edges
+
+
+@compiled
+def surface_steps(bearings: Floats, ends: Floats, gates: Floats, grazing: float, longest: float) -> Booleans:
+    """Whether one surface can hold reading i and the next (n,), by geometry.
+
+    Either the step between the two leaves the beam at more than the grazing angle (after Borges & Aldon 2004), noise
+    apart, or a grazing wall: the line through the two readings on one side foretells the step within its noise.
+    """
+    n = bearings.size
+    joined = np.zeros(n, dtype=np.bool_)
+    for i in range(n):
+        j = (i + 1) % n
+        near, far = np.hypot(ends[i, 0], ends[i, 1]), np.hypot(ends[j, 0], ends[j, 1])
+        angle = (bearings[j] - bearings[i]) % (2 * np.pi)
+        nearer = min(near, far)
+        reach = nearer * np.sin(angle) / np.sin(grazing - angle) if angle < grazing else np.inf
+        step = np.hypot(ends[j, 0] - ends[i, 0], ends[j, 1] - ends[i, 1])
+        if angle < 0.5 * np.pi and step <= min(reach, longest) + gates[i]:
+            joined[i] = True
+        elif step <= longest:
+            joined[i] = _foretold(ends, (i - 1) % n, i, j, gates[i]) or _foretold(ends, (j + 1) % n, j, i, gates[j])
+    return joined
+
+
+@compiled
+def _foretold(ends: Floats, before: int, here: int, there: int, gate: float) -> bool:
+    """Whether the line from `before` through `here` meets the beam to `there` within the gate and its leverage."""
+    dx, dy = ends[here, 0] - ends[before, 0], ends[here, 1] - ends[before, 1]
+    reach = np.hypot(ends[there, 0], ends[there, 1])
+    bx, by = ends[there, 0] / reach, ends[there, 1] / reach
+    across = dx * by - dy * bx
+    length = np.hypot(dx, dy)
+    if abs(across) < 1e-9 or length < 1e-9:
+        return False
+    foreseen = (dx * ends[here, 1] - dy * ends[here, 0]) / across
+    leverage = 1.0 + np.hypot(ends[there, 0] - ends[here, 0], ends[there, 1] - ends[here, 1]) / length
+    return foreseen > 0 and abs(foreseen - reach) <= gate * leverage and leverage < 3.5

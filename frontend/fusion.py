@@ -1,0 +1,207 @@
+"""The fused scan: sonar and infrared combined by the three rules, with the beam undone (Flynn 1988, §3.3).
+
+A scan without infrared, or without a beam to undo, passes through the same steps and keeps its ranges.
+"""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frontend.infrared_edges import InfraredEdge, Opening, infrared_edges, pair_edges
+from frontend.opening import undo_beam
+from frontend.rigid_motion import transform
+from frontend.scan import Booleans, Floats, Integers, Scan
+
+
+class ReadingKind(IntEnum):
+    """What became of a reading."""
+
+    MEASURED = 0
+    NO_RETURN = 1
+    DOOR_ARC = 2
+    REJECTED = 3
+
+
+@dataclass(frozen=True)
+class FusionSettings:
+    """Opinions of the fusion.
+
+    beam_share: the share of the stated half-beam to undo.
+    """
+
+    beam_share: float = 1.0  # larger reaches deeper into corners and gaps, and past the truth where it exceeds 1
+    no_return_clears: float = 2.0  # metres a reading without echo counts as free; larger opens rooms behind glass
+    spike_height: float = 0.5  # metres; larger lets more lone readings (specular, crosstalk) pass as surface
+    spike_readings: int = 2  # readings a lone run may have and still be rejected; larger rejects narrow true gaps
+    door_depth: float = 0.3  # metres an opening lies behind its jambs at least; larger misses shallow niches
+
+
+@dataclass(frozen=True, eq=False)
+class FusedScan:
+    """A scan after the rules.
+
+    ranges: (n,) metres along each bearing (n,), always finite; raw_ranges: (n,) as the sensor gave them.
+    kinds: (n,) ReadingKind. spread: (n,) standard deviation along the beam, metres.
+    edges: valid infrared edges; openings: the pairs among them that were redrawn as arcs.
+    jambs: (d, 2, 2) the right and left jamb of each opening in the robot's frame.
+    reasons: why a reading was rejected or an edge opened nothing, by reading.
+    """
+
+    scan: Scan
+    bearings: Floats
+    ranges: Floats
+    raw_ranges: Floats
+    kinds: NDArray[np.uint8]
+    spread: Floats
+    edges: tuple[InfraredEdge, ...]
+    openings: tuple[Opening, ...]
+    jambs: Floats
+    reasons: dict[int, str]
+
+    @property
+    def origin(self) -> Floats:
+        """Where the sensor sits in the robot's frame, (2,)."""
+        return np.array(self.scan.sensor.mount[:2])
+
+
+def fuse(scan: Scan, settings: FusionSettings) -> FusedScan:
+    """Judge each reading, undo the beam, then redraw what the infrared opens."""
+    kinds, reasons = _judge(scan, settings)
+    measured = kinds == ReadingKind.MEASURED
+    opened = undo_beam(
+        scan.bearings,
+        np.where(measured, scan.ranges, np.nan),
+        scan.sensor.half_beam * settings.beam_share,
+        scan.full_turn,
+    )
+    ranges = _filled(opened, kinds, scan, settings)
+    edges = infrared_edges(scan)
+    pairs, lone = pair_edges(edges, scan)
+    reasons |= {edge.jamb: f"a lone infrared edge at {np.degrees(edge.bearing):.1f}° opens nothing" for edge in lone}
+    openings = []
+    for opening in pairs:
+        reason = _why_closed(opening, ranges, scan, settings)
+        if reason is None:
+            openings.append(opening)
+            ranges[opening.readings] = _arc(opening, ranges, scan)
+            kinds[opening.readings] = ReadingKind.DOOR_ARC
+        else:
+            reasons[opening.right.jamb] = reason
+    spread = np.full(ranges.size, np.hypot(scan.sensor.range_noise, scan.sensor.quantum / np.sqrt(12)))
+    return FusedScan(
+        scan, scan.bearings, ranges, scan.ranges, kinds, spread,
+        tuple(edges), tuple(openings), _jambs(openings, ranges, scan), reasons,
+    )  # fmt: skip
+
+
+def _judge(scan: Scan, settings: FusionSettings) -> tuple[NDArray[np.uint8], dict[int, str]]:
+    """The kind (n,) of each reading before fusion, and why readings are rejected. Rule 2: no echo is no surface."""
+    sensor, ranges = scan.sensor, scan.ranges
+    kinds = np.full(ranges.size, ReadingKind.MEASURED, dtype=np.uint8)
+    kinds[ranges >= sensor.max_range] = ReadingKind.NO_RETURN
+    unusable, near = np.isnan(ranges), ranges < sensor.min_range
+    reasons = {int(i): "unusable reading" for i in np.flatnonzero(unusable)}
+    reasons |= {
+        int(i): f"{ranges[i]:.2f} m is under the sensor's least range {sensor.min_range:.2f} m"
+        for i in np.flatnonzero(near)
+    }
+    kinds[unusable | near] = ReadingKind.REJECTED
+    for i in np.flatnonzero(_spikes(scan, kinds == ReadingKind.MEASURED, settings)):
+        kinds[i] = ReadingKind.REJECTED
+        reasons[int(i)] = (
+            f"{ranges[i]:.2f} m stands alone between nearer readings: a wide beam cannot see so thin a gap"
+        )
+    return kinds, reasons
+
+
+def _spikes(scan: Scan, measured: Booleans, settings: FusionSettings) -> Booleans:
+    """Lone far readings of a wide beam (n,): specular losses, which undoing the beam would spread over a window."""
+    ranges = np.where(measured, scan.ranges, np.nan)
+    spikes = np.zeros(ranges.size, dtype=bool)
+    if scan.sensor.half_beam <= 0:
+        return spikes
+    reach = settings.spike_readings
+    padded = np.pad(ranges, reach, mode="wrap") if scan.full_turn else np.pad(ranges, reach, constant_values=np.nan)
+    before = np.stack([padded[k : k + ranges.size] for k in range(reach)])
+    after = np.stack([padded[reach + 1 + k : reach + 1 + k + ranges.size] for k in range(reach)])
+    nearest_before = np.min(np.where(np.isnan(before), np.inf, before), axis=0)
+    nearest_after = np.min(np.where(np.isnan(after), np.inf, after), axis=0)
+    return np.asarray(ranges > np.maximum(nearest_before, nearest_after) + settings.spike_height)
+
+
+def _filled(opened: Floats, kinds: NDArray[np.uint8], scan: Scan, settings: FusionSettings) -> Floats:
+    """Ranges (n,) with a cautious one wherever nothing was measured: no farther than the nearer neighbour says."""
+    measured = kinds == ReadingKind.MEASURED
+    ranges = np.where(measured, opened, np.nan)
+    silent = kinds == ReadingKind.NO_RETURN
+    ranges[silent] = min(settings.no_return_clears, scan.sensor.max_range)
+    rejected = np.flatnonzero(kinds == ReadingKind.REJECTED)
+    known = np.flatnonzero(~np.isnan(ranges))
+    if rejected.size and known.size:
+        before, after = _known_neighbours(rejected, known, ranges, scan.full_turn)
+        ranges[rejected] = np.minimum(before, after)
+    floor = max(scan.sensor.min_range, 0.01)
+    return np.maximum(np.where(np.isnan(ranges), floor, ranges), 0.01)
+
+
+def _known_neighbours(places: Integers, known: Integers, ranges: Floats, full_turn: bool) -> tuple[Floats, Floats]:
+    """Ranges of the nearest known readings before and after each place; nan past the ends of a part turn."""
+    slot = np.searchsorted(known, places)
+    before, after = ranges[known[slot - 1]], ranges[known[slot % known.size]]
+    if not full_turn:
+        before = np.where(slot == 0, np.nan, before)
+        after = np.where(slot == known.size, np.nan, after)
+    return before, after
+
+
+def _why_closed(opening: Opening, ranges: Floats, scan: Scan, settings: FusionSettings) -> str | None:
+    """Why the infrared's silence between two edges is no opening, or None when it is one."""
+    horizon = scan.sensor.infrared_range
+    assert horizon is not None
+    jamb = max(ranges[opening.right.jamb], ranges[opening.left.jamb])
+    width = _gap(opening)
+    core = opening.readings[_core(opening, scan)]
+    looked = core[np.isfinite(scan.ranges[core])]
+    if looked.size and np.min(scan.ranges[looked]) < horizon:
+        return (
+            f"the sonar sees a surface {np.min(scan.ranges[looked]):.2f} m away inside the {np.degrees(width):.0f}° gap"
+        )
+    beyond = np.max(ranges[opening.readings])
+    if max(horizon, beyond) - jamb < settings.door_depth:
+        return f"no depth behind the jamb at {jamb:.2f} m: the infrared fades out at {horizon:.2f} m"
+    return None
+
+
+def _gap(opening: Opening) -> float:
+    return float(np.mod(opening.left.bearing - opening.right.bearing, 2 * np.pi))
+
+
+def _core(opening: Opening, scan: Scan) -> Booleans:
+    """Which readings (w,) of the opening have their whole beam inside it."""
+    from_right = np.mod(scan.bearings[opening.readings] - opening.right.bearing, 2 * np.pi)
+    return np.asarray((from_right > scan.sensor.half_beam) & (from_right < _gap(opening) - scan.sensor.half_beam))
+
+
+def _arc(opening: Opening, ranges: Floats, scan: Scan) -> Floats:
+    """Ranges (w,) of the arc: the infrared's horizon or the farthest echo, whichever is farther.
+
+    A gap wider than the beam lets the sonar look through, so there each bearing keeps its own opened range:
+    one far echo in the middle says nothing of the sides.
+    """
+    horizon = scan.sensor.infrared_range
+    assert horizon is not None
+    own = ranges[opening.readings]
+    if np.any(_core(opening, scan)):
+        return np.maximum(own, horizon)
+    return np.full(own.size, max(horizon, float(np.max(own))))
+
+
+def _jambs(openings: list[Opening], ranges: Floats, scan: Scan) -> Floats:
+    """Jamb points (d, 2, 2) in the robot's frame: bearing from the infrared, range from the opened sonar."""
+    edges = [edge for opening in openings for edge in (opening.right, opening.left)]
+    bearings = np.array([edge.bearing for edge in edges])
+    reach = np.array([ranges[edge.jamb] for edge in edges])
+    points = reach[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)]) if edges else np.empty((0, 2))
+    return transform(points, np.array(scan.sensor.mount)).reshape(-1, 2, 2)
