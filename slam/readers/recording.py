@@ -1,0 +1,40 @@
+"""A recording: the scans of one drive in order, and what of the file could not be used."""
+
+from dataclasses import dataclass
+
+from frontend.scan import Scan
+
+
+class RecordingError(Exception):
+    """A recording that cannot be read; the message names the file, the line and the numbers."""
+
+
+@dataclass(frozen=True)
+class DamagedLine:
+    """A line that was left out, or used only in part, and why."""
+
+    file: str
+    line: int
+    reason: str
+
+    def __str__(self) -> str:
+        return f"{self.file} line {self.line}: {self.reason}"
+
+
+@dataclass(frozen=True)
+class OdometryNoise:
+    """What the wheels add, a fact of the robot: standard deviations in m per m, rad per rad and rad per m."""
+
+    distance_noise: float
+    turn_noise: float
+    turn_per_metre_noise: float
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """Scans in the order of their times, at least one; odometry_noise is None where nobody measured it."""
+
+    name: str
+    scans: tuple[Scan, ...]
+    damaged: tuple[DamagedLine, ...] = ()
+    odometry_noise: OdometryNoise | None = None

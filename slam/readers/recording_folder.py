@@ -1,0 +1,67 @@
+"""Recording folders: `recording.toml` with the robot's facts beside a range table. Truth lying there is never read."""
+
+import math
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from frontend.scan import Sensor
+from slam import toml_file
+from slam.readers.range_table import parse_header, parse_row
+from slam.readers.recording import OdometryNoise, Recording, RecordingError
+from slam.readers.sieve import LineError, Sieve, in_time
+
+
+@dataclass(frozen=True)
+class SensorTable:
+    """[sensor] of recording.toml, as `frontend.scan.Sensor` but in degrees. mount: x, y in metres, heading."""
+
+    kind: str
+    max_range: float
+    min_range: float = 0.0
+    half_beam_degrees: float = 0.0
+    range_noise: float = 0.02
+    quantum: float = 0.0
+    infrared_range: float | None = None
+    mount: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    @property
+    def sensor(self) -> Sensor:
+        """The same facts in the units of the front end."""
+        x, y, heading = self.mount
+        half_beam, mount = math.radians(self.half_beam_degrees), (x, y, math.radians(heading))
+        facts = (self.kind, self.max_range, self.min_range, half_beam, self.range_noise, self.quantum)
+        return Sensor(*facts, self.infrared_range, mount)
+
+
+@dataclass(frozen=True)
+class RecordingTable:
+    """The whole of recording.toml. command: what made the recording, if it was simulated."""
+
+    name: str
+    sensor: SensorTable
+    readings: str = "readings.csv"
+    description: str = ""
+    command: str = ""
+    odometry: OdometryNoise | None = None
+
+
+def read_recording_folder(folder: Path, strict: bool) -> Recording:
+    """The folder's recording."""
+    facts = toml_file.load(folder / "recording.toml", RecordingTable)
+    table = read_range_table(folder / facts.readings, strict, facts.sensor.sensor)
+    return Recording(facts.name, table.scans, table.damaged, facts.odometry)
+
+
+def read_range_table(path: Path, strict: bool, sensor: Sensor) -> Recording:
+    """The range table at `path`, seen by `sensor`."""
+    sieve = Sieve(path, strict=strict)
+    lines = ((number, text) for number, text in sieve.lines() if text.strip() and not text.startswith("#"))
+    number, first = next(lines, (1, ""))
+    try:
+        header = parse_header(first)
+    except LineError as damage:
+        raise RecordingError(f"{path.name} line {number}: {damage}") from damage
+    scans = tuple(sieve.through(lines, in_time(partial(parse_row, header=header, sensor=sensor))))
+    sieve.check()
+    return Recording(path.name.split(".")[0], scans, tuple(sieve.damaged))
