@@ -59,12 +59,33 @@ class Obstacle:
     views: NDArray[np.int64]
 
 
+class Verdict(IntEnum):
+    """What the merge did with a piece of a view's boundary (Flynn 1988, §4.1)."""
+
+    KEPT = 0  # real, and part of the map's boundary
+    CONTRADICTED = 1  # real in its view, but others saw through it
+    SEEN_BEHIND = 2  # fake: another view saw what lies behind it
+    OPEN = 3  # fake, and nobody saw behind it: a frontier
+    INFERRED = 4  # an object nobody saw whole, closed by its surroundings
+
+
+@dataclass(frozen=True, eq=False)
+class Decision:
+    """One decision of the merge: the piece (k, 2) it is about, whose it was, and the views that decided it."""
+
+    verdict: Verdict
+    piece: Floats
+    owners: NDArray[np.int64]
+    deciders: NDArray[np.int64]
+
+
 @dataclass(frozen=True, eq=False)
 class RoomMap:
     """The merged map, in metres, in the frame of the first pose.
 
     free: the best estimate of free space. safety: the same, inset for planning.
     leaks: (l, 2) points of supported real edges that lie inside the final free space (the wall-leak alarm).
+    decisions: what was kept, thrown away and inferred, and by whom.
     """
 
     free: MultiPolygon
@@ -73,3 +94,4 @@ class RoomMap:
     doors: tuple[Door, ...]
     obstacles: tuple[Obstacle, ...]
     leaks: Floats
+    decisions: tuple[Decision, ...] = ()

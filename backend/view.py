@@ -20,6 +20,10 @@ class EdgeKind(IntEnum):
     DOOR_ARC = 4  # redrawn between two infrared edges: a lower bound, not a surface
 
 
+class ViewError(Exception):
+    """A view whose arrays do not fit together; the message carries the numbers."""
+
+
 @dataclass(frozen=True, eq=False)
 class View:
     """The star-shaped free space of one scan, in the robot's frame.
@@ -36,7 +40,22 @@ class View:
     origin: Floats
     openings: Floats
 
+    def __post_init__(self) -> None:
+        """Check the shapes once, at the door."""
+        corners = len(self.boundary)
+        if self.boundary.shape != (corners, 2) or corners < 3:
+            raise ViewError(f"a view needs a ring of three corners or more, but got shape {self.boundary.shape}")
+        if self.edges.shape != (corners,) or self.spread.shape != (corners,):
+            raise ViewError(f"{corners} corners, but {self.edges.size} edges and {self.spread.size} spreads")
+
     @property
     def free_space(self) -> Polygon:
         """The polygon inside the boundary."""
         return Polygon(self.boundary)
+
+
+def place(points: Floats, pose: Floats) -> Floats:
+    """Points (n, 2) of the robot's frame, in the frame its pose (3,) is given in."""
+    cosine, sine = np.cos(pose[2]), np.sin(pose[2])
+    turned: Floats = points @ np.array([[cosine, sine], [-sine, cosine]]) + pose[:2]
+    return turned

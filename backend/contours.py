@@ -1,0 +1,91 @@
+"""Contours of a mask: the rings between inside and outside, back from cells to vectors."""
+
+import numpy as np
+import shapely
+from numba import njit
+from numpy.typing import NDArray
+from shapely import MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
+
+Floats = NDArray[np.float64]
+
+
+def contours(mask: NDArray[np.bool_]) -> list[Floats]:
+    """Closed rings (r, 2) around the true cells of a mask (rows, columns) whose rim is false.
+
+    Each ring runs through the middles of the cell sides it follows, x along columns and y along rows, in cells,
+    with the true cells on its left: outer rings turn counter-clockwise, holes clockwise. Cells that touch
+    at a corner only are kept apart.
+    """
+    sides = np.zeros((mask.shape[0] + 1, mask.shape[1] + 1), dtype=np.uint8)
+    sides[:-1, :-1] |= np.where(mask & ~np.roll(mask, 1, axis=0), 1, 0).astype(np.uint8)  # along +x, below the cell
+    sides[:-1, 1:] |= np.where(mask & ~np.roll(mask, -1, axis=1), 2, 0).astype(np.uint8)  # along +y, right of it
+    sides[1:, 1:] |= np.where(mask & ~np.roll(mask, -1, axis=0), 4, 0).astype(np.uint8)  # along −x, above it
+    sides[1:, :-1] |= np.where(mask & ~np.roll(mask, 1, axis=1), 8, 0).astype(np.uint8)  # along −y, left of it
+    rows, columns = np.nonzero(sides)
+    length = int(np.bitwise_count(sides).sum())
+    middles, ends = _trace(sides, rows, columns, length)
+    return np.split(middles, ends[:-1]) if len(ends) else []
+
+
+@njit(cache=True)
+def _trace(sides, rows, columns, length):  # type: ignore[no-untyped-def]
+    """Follow the sides corner by corner; at a crossing turn left. Gives stacked middles and where each ring ends."""
+    step = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])
+    middles = np.empty((length, 2))
+    ends = np.empty(length, dtype=np.int64)
+    count = rings = 0
+    for seed in range(len(rows)):
+        while sides[rows[seed], columns[seed]]:
+            x, y = columns[seed], rows[seed]
+            heading = 0
+            while not sides[y, x] & (1 << heading):
+                heading += 1
+            while sides[y, x]:
+                for turn in (1, 0, 3, 2):
+                    if sides[y, x] & (1 << ((heading + turn) % 4)):
+                        heading = (heading + turn) % 4
+                        break
+                sides[y, x] ^= 1 << heading
+                middles[count, 0] = x + 0.5 * step[heading, 0]
+                middles[count, 1] = y + 0.5 * step[heading, 1]
+                x, y = x + step[heading, 0], y + step[heading, 1]
+                count += 1
+                if x == columns[seed] and y == rows[seed]:
+                    break
+            ends[rings] = count
+            rings += 1
+    return middles, ends[:rings]
+
+
+def assemble(rings: list[Floats]) -> MultiPolygon:
+    """Polygons with holes from rings in metres: counter-clockwise ones are outer, clockwise ones are holes."""
+    shapes = [shapely.Polygon(ring) for ring in rings if len(ring) >= 3]
+    outward = np.array([shape.exterior.is_ccw for shape in shapes], dtype=bool)
+    outer = _valid([shape for shape, is_outer in zip(shapes, outward, strict=True) if is_outer])
+    holes = _valid([shape for shape, is_outer in zip(shapes, outward, strict=True) if not is_outer])
+    if not outer:
+        return MultiPolygon()
+    tree = shapely.STRtree(outer)
+    areas = shapely.area(outer)
+    inside: list[list[Polygon]] = [[] for _ in outer]
+    for hole in holes:
+        around = tree.query(hole.representative_point(), predicate="intersects")
+        if len(around):
+            inside[int(around[np.argmin(areas[around])])].append(hole)
+    whole = [ring.difference(shapely.union_all(cut)) if cut else ring for ring, cut in zip(outer, inside, strict=True)]
+    return as_polygons(shapely.GeometryCollection(whole))
+
+
+def as_polygons(shape: BaseGeometry) -> MultiPolygon:
+    """Any geometry as polygons, its lines and points left out."""
+    return MultiPolygon(_polygons(shape))
+
+
+def _valid(shapes: list[Polygon]) -> list[Polygon]:
+    return [part for shape in shapes for part in _polygons(shapely.make_valid(shape))]
+
+
+def _polygons(shape: BaseGeometry) -> list[Polygon]:
+    flat = shapely.get_parts(shapely.get_parts(shape))
+    return [piece for piece in flat if isinstance(piece, Polygon) and piece.area > 0]
