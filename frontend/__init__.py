@@ -1,1 +1,11 @@
-"""TODO table of contents."""
+"""One scan in, a primal sketch out; two sketches in, an alignment out.
+
+scan           what the head saw in one turn, with the facts of its sensor
+sensors/       what sonar, infrared, lidar and time-of-flight would read in a given world
+fusion         sonar and infrared combined by three rules; opening undoes the beam, infrared_edges finds the jambs
+contour        readings joined into a boundary, every edge real or a line of sight; surface for registration
+scale_space    the boundary's orientation at several scales; landmarks and jambs are what stands out
+primal_sketch  knots, fitted lines and the polyline between them
+matching       knots of two sketches paired: near by joint compatibility, lost by constellations
+registration   real surface laid on real surface; rigid_motion is the algebra of poses
+"""

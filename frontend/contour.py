@@ -150,7 +150,7 @@ def _at(values: Floats, owner: Integers, chosen: Booleans) -> Floats:
 def _filler_counts(corners: Floats, edges: NDArray[np.uint8], spacing: float) -> Integers:
     """Fillers (n,) after each corner: none along the sides of the view, which are no boundary of anything."""
     lengths = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
-    counts = np.maximum(np.ceil(lengths / spacing) - 1, 0).astype(np.int64)
+    counts: Integers = np.maximum(np.ceil(lengths / spacing) - 1, 0).astype(np.int64)
     counts[edges == EdgeKind.SIDE] = 0
     return counts
 
@@ -206,4 +206,4 @@ def _foretold(ends: Floats, before: int, here: int, there: int, gate: float) -> 
         return False
     foreseen = (dx * ends[here, 1] - dy * ends[here, 0]) / across
     leverage = 1.0 + np.hypot(ends[there, 0] - ends[here, 0], ends[there, 1] - ends[here, 1]) / length
-    return foreseen > 0 and abs(foreseen - reach) <= gate * leverage and leverage < 3.5
+    return bool(foreseen > 0 and abs(foreseen - reach) <= gate * leverage and leverage < 3.5)

@@ -41,6 +41,6 @@ def _window_maxima(ranges: Floats, first: Integers, last: Integers) -> Floats:
     for i in range(n):
         for j in range(first[i], last[i] + 1):
             value = ranges[j % n]
-            if value == value and not maxima[i] >= value:
+            if not np.isnan(value) and not maxima[i] >= value:
                 maxima[i] = value
     return maxima

@@ -1,0 +1,109 @@
+"""Landmark knots: significant corners of one real chain, found in scale space, placed where two lines meet.
+
+Only surface that was measured on both sides can make one: an edge of sight moves with the viewpoint.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from frontend.compiled import compiled
+from frontend.lines import crossing, fit_line
+from frontend.scale_space import scale_space, tracks
+from frontend.scan import Floats, Integers
+
+
+@dataclass(frozen=True)
+class LandmarkSettings:
+    """Opinions of the landmark search; lengths in metres, angles in radians."""
+
+    finest: float = 0.1  # smallest sigma; larger ignores more clutter and noise
+    scales: int = 5  # sigmas, each √2 coarser than the one before; more asks for longer walls
+    spacing: float = 0.04  # of the resampled boundary; larger is cheaper and blurs places
+    least_turn: float = 0.45  # larger keeps only sharper corners
+    significance: float = 4.0  # sigmas of the noise law; larger keeps only clearer corners
+    support: float = 1.0  # metres of wall used on each side of a knot; larger is surer on straight walls
+    least_support: float = 0.2  # metres of wall a side must have; larger drops knots near chain ends
+    least_points: int = 4  # readings a side must have; larger drops far knots
+    roughness: float = 2.5  # rms across the fitted lines in units of the noise; larger takes rough or curved walls
+
+
+@dataclass(frozen=True, eq=False)
+class ChainKnots:
+    """Knots of one chain, in its order.
+
+    positions (t, 2), turns (t,) counter-clockwise, headings (t,) of the bisector towards the free space,
+    covariances (t, 2, 2), scales (t, 2) finest and coarsest sigma they live at, places (t,) index of the reading
+    in the chain that the knot follows.
+    """
+
+    positions: Floats
+    turns: Floats
+    headings: Floats
+    covariances: Floats
+    scales: Floats
+    places: Integers
+
+
+def chain_knots(points: Floats, noise: float, settings: LandmarkSettings) -> ChainKnots:
+    """The landmark knots of a chain of points (n, 2), free space on its left."""
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    if points.shape[0] < 2 * settings.least_points or arc[-1] < 2 * settings.least_support:
+        return _from_rows(np.empty((0, 8)), np.empty((0, 2)), np.empty(0, dtype=np.int64))
+    sigmas = settings.finest * np.sqrt(2.0) ** np.arange(settings.scales)
+    space = scale_space(points, sigmas, settings.spacing)
+    found = tracks(space, thresholds(sigmas, noise, float(arc[-1]) / (arc.size - 1), settings))
+    order = np.argsort(found.place)
+    at = space.arc_length[found.place[order]]
+    rows, kept = place_corners(
+        points, arc, at, noise,
+        np.array([settings.support, settings.least_support, settings.least_points,
+                  settings.roughness, settings.least_turn]),
+    )  # fmt: skip
+    lived = np.column_stack([sigmas[found.first], sigmas[found.last]])[order][kept]
+    return _from_rows(rows, lived, np.searchsorted(arc, at[kept]) - 1)
+
+
+def thresholds(sigmas: Floats, noise: float, step: float, settings: LandmarkSettings) -> Floats:
+    """Least turn (l,) that stands out of the noise at each sigma: k·e·√(2π)·√(3h / 8√π)·σ^(−3/2)."""
+    law = np.sqrt(2 * np.pi) * np.sqrt(3 * step / (8 * np.sqrt(np.pi))) * sigmas**-1.5
+    return np.asarray(np.maximum(settings.least_turn, settings.significance * noise * law))
+
+
+@compiled
+def place_corners(points: Floats, arc: Floats, at: Floats, noise: float, limits: Floats) -> tuple[Floats, Integers]:
+    """Corners (t, 8) x, y, xx, xy, yy, turn, heading, rms from line fits left and right of the candidates `at` (c,).
+
+    Also the candidates kept (t,). A candidate is dropped when a side is too short, too rough, or hardly turns.
+    """
+    support, least_support, least_points, roughness, least_turn = limits
+    rows = np.empty((at.size, 8))
+    kept = np.empty(at.size, dtype=np.int64)
+    found = 0
+    for c in range(at.size):
+        left = max(at[c - 1] if c > 0 else 0.0, at[c] - support)
+        right = min(at[c + 1] if c < at.size - 1 else arc[-1], at[c] + support)
+        a, b = np.searchsorted(arc, left - 1e-9), np.searchsorted(arc, at[c])
+        d = np.searchsorted(arc, right + 1e-9)
+        if min(b - a, d - b) < least_points or min(at[c] - left, right - at[c]) < least_support:
+            continue
+        first, second = fit_line(points, a, b, noise), fit_line(points, b, d, noise)
+        turn = (second[2] - first[2] + np.pi) % (2 * np.pi) - np.pi
+        meet = crossing(first, second)
+        gap = np.hypot(meet[0] - points[b, 0], meet[1] - points[b, 1])
+        step = np.hypot(points[b, 0] - points[b - 1, 0], points[b, 1] - points[b - 1, 1])
+        if max(first[5], second[5]) > roughness * noise or abs(turn) < least_turn or not gap < 2 * step + 0.1:
+            continue
+        rows[found, :5] = meet
+        rows[found, 5] = turn
+        rows[found, 6] = first[2] + 0.5 * turn + 0.5 * np.pi
+        rows[found, 7] = max(first[5], second[5])
+        kept[found] = c
+        found += 1
+    return rows[:found], kept[:found]
+
+
+def _from_rows(rows: Floats, lived: Floats, places: Integers) -> ChainKnots:
+    covariances = rows[:, [2, 3, 3, 4]].reshape(-1, 2, 2)
+    headings = np.pi - np.mod(np.pi - rows[:, 6], 2 * np.pi)
+    return ChainKnots(rows[:, :2], rows[:, 5], headings, covariances, lived, places)

@@ -1,0 +1,147 @@
+"""Scale space of the boundary: its tangent orientation smoothed with Gaussians of several widths (Flynn 1988, §4).
+
+Everything here is metres along one real chain. A corner of turn φ reads φ at every scale in `turns`, because
+(G∗θ)′ peaks at φ / (σ√(2π)); pairs and curves read differently at different scales, which tells them apart.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from frontend.compiled import compiled
+from frontend.scan import Floats, Integers
+
+
+@dataclass(frozen=True, eq=False)
+class ScaleSpace:
+    """Of one chain: arc_length (m,), points (m, 2) evenly spaced, sigmas (l,), turns (l, m) in radians.
+
+    turns: σ√(2π)·(G∗θ)′, the turn a corner at that place would have.
+    """
+
+    arc_length: Floats
+    points: Floats
+    sigmas: Floats
+    turns: Floats
+
+
+def scale_space(points: Floats, sigmas: Floats, spacing: float) -> ScaleSpace:
+    """The scale space of a chain of points (n, 2), n ≥ 2. sigmas: (l,) metres, fine to coarse."""
+    steps = np.hypot(*np.diff(points, axis=0).T)
+    places = np.concatenate([[0.0], np.cumsum(steps)])
+    count = max(int(np.ceil(places[-1] / spacing)) + 1, 3)
+    even = np.linspace(0.0, places[-1], count)
+    walked = np.column_stack([np.interp(even, places, points[:, 0]), np.interp(even, places, points[:, 1])])
+    return ScaleSpace(even, walked, sigmas, chain_turns(walked, even[1], sigmas))
+
+
+@compiled
+def chain_turns(points: Floats, spacing: float, sigmas: Floats) -> Floats:
+    """Scale-normalised turns (l, m) of evenly spaced points (m, 2) at each sigma (l,).
+
+    The finest sigma smooths the positions, so that a dense noisy wall has an orientation at all; the others smooth
+    that orientation further. Ends continue by reflection through the end point, which leaves a wall straight.
+    """
+    m = points.shape[0]
+    orientation = _orientation(points, spacing, sigmas[0])
+    turns = np.empty((sigmas.size, m))
+    for level in range(sigmas.size):
+        sigma = sigmas[level]
+        extra = np.sqrt(max(sigma**2 - sigmas[0] ** 2, (0.5 * spacing) ** 2))
+        reach = int(np.ceil(3.5 * extra / spacing))
+        offsets = np.arange(-reach, reach + 1) * spacing
+        kernel = np.exp(-0.5 * (offsets / extra) ** 2)
+        slope = offsets * kernel
+        slope /= np.sum(slope * offsets)
+        for i in range(m):
+            total = 0.0
+            for k in range(-reach, reach + 1):
+                total += slope[k + reach] * orientation[_reflected(i + k, m)]
+            turns[level, i] = total * sigma * np.sqrt(2 * np.pi)
+    return turns
+
+
+@compiled
+def _orientation(points: Floats, spacing: float, sigma: float) -> Floats:
+    """Unwrapped tangent orientation (m,) of the points smoothed with sigma."""
+    m = points.shape[0]
+    reach = int(np.ceil(3.5 * sigma / spacing))
+    offsets = np.arange(-reach, reach + 1) * spacing
+    slope = offsets * np.exp(-0.5 * (offsets / sigma) ** 2)
+    orientation = np.empty(m)
+    for i in range(m):
+        x, y = 0.0, 0.0
+        for k in range(-reach, reach + 1):
+            j = _reflected(i + k, m)
+            px, py = points[j, 0], points[j, 1]
+            if i + k < 0:
+                px, py = 2 * points[0, 0] - px, 2 * points[0, 1] - py
+            elif i + k >= m:
+                px, py = 2 * points[m - 1, 0] - px, 2 * points[m - 1, 1] - py
+            x += slope[k + reach] * px
+            y += slope[k + reach] * py
+        angle = np.arctan2(y, x)
+        if i > 0:
+            turn = angle - orientation[i - 1]
+            angle -= 2 * np.pi * np.round(turn / (2 * np.pi))
+        orientation[i] = angle
+    return orientation
+
+
+@compiled
+def _reflected(i: int, m: int) -> int:
+    """Index i brought into 0…m − 1 by reflection at the ends, without repeating them."""
+    period = 2 * (m - 1)
+    i = abs(i) % period
+    return i if i < m else period - i
+
+
+@dataclass(frozen=True, eq=False)
+class Tracks:
+    """Extrema of the turns followed over the scales: place (t,) index at the finest, first and last level (t,)."""
+
+    place: Integers
+    first: Integers
+    last: Integers
+
+
+def tracks(space: ScaleSpace, thresholds: Floats) -> Tracks:
+    """Extrema over the thresholds (l,) followed from fine to coarse; each track keeps its sign."""
+    spacing = float(space.arc_length[1])
+    place, first, last = follow_extrema(space.turns, thresholds, space.sigmas / spacing)
+    return Tracks(place, first, last)
+
+
+@compiled
+def follow_extrema(turns: Floats, thresholds: Floats, reaches: Floats) -> tuple[Integers, Integers, Integers]:
+    """Place, first and last level (t,) of each track; an extremum joins the nearest one within a sigma above it."""
+    levels, m = turns.shape
+    place, first, last, head = (
+        [0 for _ in range(0)],
+        [0 for _ in range(0)],
+        [0 for _ in range(0)],
+        [0 for _ in range(0)],
+    )
+    for level in range(levels):
+        row = turns[level]
+        for i in range(m):
+            size = abs(row[i])
+            before = abs(row[i - 1]) if i > 0 else 0.0
+            after = abs(row[i + 1]) if i < m - 1 else 0.0
+            if size < thresholds[level] or size < before or size <= after:
+                continue
+            chosen, nearest = -1, reaches[level] + 1.0
+            for t in range(len(place)):
+                gap = abs(head[t] - i)
+                same = turns[last[t], head[t]] * row[i] > 0
+                if last[t] == level - 1 and same and gap < nearest:
+                    chosen, nearest = t, gap
+            if chosen >= 0:
+                head[chosen] = i
+                last[chosen] = level
+            else:
+                place.append(i)
+                first.append(level)
+                last.append(level)
+                head.append(i)
+    return np.array(place, dtype=np.int64), np.array(first, dtype=np.int64), np.array(last, dtype=np.int64)
