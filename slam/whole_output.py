@@ -1,0 +1,58 @@
+"""Output that is there whole or not at all: written under a hidden name beside its place, then renamed into it."""
+
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import mkdtemp
+
+RESULT_MARK = "report.json"
+
+
+class OutputError(Exception):
+    """An output that cannot be written where it was asked for."""
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Put `text` at `path`; whoever reads meanwhile sees the old content or the new, never half."""
+    hidden = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        hidden.write_text(text, encoding="utf-8")
+        hidden.replace(path)
+    except OSError as reason:
+        raise OutputError(f"{path} cannot be written: {reason.strerror or reason}") from reason
+    finally:
+        if hidden.exists():
+            hidden.unlink()
+
+
+@contextmanager
+def whole_folder(folder: Path) -> Iterator[Path]:
+    """An empty folder to fill; on success it takes the place of `folder`, on failure nothing is left of it.
+
+    Only an earlier result gives way: whatever else lies in `folder` is not ours to delete.
+    """
+    check_place(folder)
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        hidden = Path(mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+    except OSError as reason:
+        raise OutputError(f"{folder} cannot be made: {reason.strerror or reason}") from reason
+    try:
+        yield hidden
+        hidden.chmod(0o755)
+        if folder.exists():
+            shutil.rmtree(folder)
+        hidden.rename(folder)
+    finally:
+        shutil.rmtree(hidden, ignore_errors=True)
+
+
+def check_place(folder: Path) -> None:
+    """Raise OutputError unless `folder` is free, empty or holds an earlier result."""
+    if folder.exists() and not folder.is_dir():
+        raise OutputError(f"{folder} is a file, but a folder is to be written there")
+    if folder.is_dir() and any(folder.iterdir()) and not (folder / RESULT_MARK).exists():
+        raise OutputError(f"{folder} holds other files and no {RESULT_MARK} of an earlier run: choose another folder")
