@@ -1,0 +1,34 @@
+"""The estimate: where every scan was taken, how surely, and what was believed or refused on the way."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What was decided about a scan, a match or a loop, and why. scans: the indices it concerns."""
+
+    what: str
+    scans: tuple[int, ...]
+    accepted: bool
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """poses (n, 3) in the frame of the first, covariances (n, 3, 3) in each pose's own axes, landmarks (l, 2),
+    sightings (l,) of each landmark, keyframes (k,) scan indices that carry the graph, decisions in their order,
+    calibration: the robot's constants as learnt from the log.
+    """
+
+    poses: Floats
+    covariances: Floats
+    landmarks: Floats
+    sightings: NDArray[np.int64]
+    keyframes: NDArray[np.int64]
+    decisions: tuple[Decision, ...]
+    calibration: dict[str, float]

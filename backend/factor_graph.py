@@ -1,0 +1,129 @@
+"""The factor graph: poses and landmarks tied by what was measured between them, solved by GTSAM.
+
+gtsam stays behind this door; keys are plain indices, poses are (3,) arrays, covariances (3, 3) in the moving frame's
+axes.
+"""
+
+from dataclasses import dataclass
+
+import gtsam
+import numpy as np
+from gtsam.symbol_shorthand import L, X
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+class GraphError(Exception):
+    """A factor names a pose or landmark that the graph does not hold."""
+
+
+@dataclass(frozen=True)
+class GraphSettings:
+    """How the graph is solved."""
+
+    loop_width: float = 1.0  # Cauchy width of a loop's residual in sigmas; larger trusts doubtful loops more
+    landmark_width: float = 1.345  # Huber width of a sighting's residual in sigmas; larger trusts outliers more
+    iterations: int = 60  # of the final solve; more refines further
+
+
+class FactorGraph:
+    """Grows by factors; `solve` moves all estimates to the optimum of everything said so far."""
+
+    def __init__(self, settings: GraphSettings) -> None:
+        self.settings = settings
+        self._graph = gtsam.NonlinearFactorGraph()
+        self._values = gtsam.Values()
+        self._loops: list[tuple[int, int, gtsam.Pose2, Floats]] = []
+        self._poses: list[int] = []
+        self.landmark_indices: list[int] = []
+
+    @property
+    def poses(self) -> Floats:
+        """(n, 3) current estimates, in the order they were added."""
+        return np.array([_plain(self._values.atPose2(X(i))) for i in self._poses]).reshape(-1, 3)
+
+    @property
+    def landmarks(self) -> Floats:
+        """(l, 2) current estimates, in the order they were added."""
+        return np.array([self._values.atPoint2(L(i)) for i in self.landmark_indices]).reshape(-1, 2)
+
+    def add_pose(self, index: int, pose: Floats) -> None:
+        """A new pose at its first guess (3,)."""
+        self._values.insert(X(index), gtsam.Pose2(*pose))
+        self._poses.append(index)
+
+    def anchor(self, index: int, pose: Floats, covariance: Floats) -> None:
+        """A pose is known from outside: the first one, or the start of a session."""
+        self._check_pose(index)
+        self._graph.add(gtsam.PriorFactorPose2(X(index), gtsam.Pose2(*pose), _noise(covariance)))
+
+    def add_motion(self, fixed: int, moving: int, pose: Floats, covariance: Floats) -> None:
+        """`moving` was seen or driven to be at `pose` (3,) in the frame of `fixed`."""
+        self._add_between(fixed, moving, pose, _noise(covariance))
+
+    def add_loop(self, fixed: int, moving: int, pose: Floats, covariance: Floats) -> None:
+        """As `add_motion`, but it may be wrong: it loses its weight when the rest of the graph contradicts it."""
+        cauchy = gtsam.noiseModel.mEstimator.Cauchy.Create(self.settings.loop_width)
+        information = np.asarray(np.linalg.inv(covariance), np.float64)
+        self._loops.append((fixed, moving, gtsam.Pose2(*pose), information))
+        self._add_between(fixed, moving, pose, gtsam.noiseModel.Robust.Create(cauchy, _noise(covariance)))
+
+    def add_landmark(self, index: int, position: Floats) -> None:
+        """A new landmark at its first guess (2,)."""
+        self._values.insert(L(index), np.asarray(position, float))
+        self.landmark_indices.append(index)
+
+    def add_sighting(self, pose: int, landmark: int, position: Floats, covariance: Floats) -> None:
+        """Landmark seen at `position` (2,) in the frame of `pose`, covariance (2, 2): a bearing-range factor."""
+        self._check_pose(pose)
+        if not self._values.exists(L(landmark)):
+            raise GraphError(
+                f"a sighting names landmark {landmark}, but the graph holds {len(self.landmark_indices)} landmarks"
+            )
+        distance = float(np.hypot(*position))
+        along = position / distance
+        turned = np.array([[-along[1], along[0]], along]) / np.array([[distance], [1.0]])
+        huber = gtsam.noiseModel.mEstimator.Huber.Create(self.settings.landmark_width)
+        noise = gtsam.noiseModel.Robust.Create(huber, _noise(turned @ covariance @ turned.T))
+        bearing = gtsam.Rot2(float(np.arctan2(position[1], position[0])))
+        self._graph.add(gtsam.BearingRangeFactor2D(X(pose), L(landmark), bearing, distance, noise))
+
+    def solve(self) -> None:
+        """Levenberg–Marquardt from the current estimates; loops keep their robust kernel."""
+        parameters = gtsam.LevenbergMarquardtParams()
+        parameters.setMaxIterations(self.settings.iterations)
+        parameters.setRelativeErrorTol(1e-6)
+        parameters.setlambdaInitial(1e-6)
+        self._values = gtsam.LevenbergMarquardtOptimizer(self._graph, self._values, parameters).optimize()
+
+    def loop_residuals(self) -> list[tuple[int, int, float]]:
+        """(fixed, moving, residual in sigmas) of every loop at the current estimate."""
+        found = []
+        for fixed, moving, measured, information in self._loops:
+            here = self._values.atPose2(X(fixed)).between(self._values.atPose2(X(moving)))
+            error = measured.localCoordinates(here)
+            found.append((fixed, moving, float(np.sqrt(error @ information @ error))))
+        return found
+
+    def covariances(self) -> Floats:
+        """(n, 3, 3) marginal covariances of the poses in their own axes."""
+        marginals = gtsam.Marginals(self._graph, self._values)
+        return np.array([marginals.marginalCovariance(X(i)) for i in self._poses]).reshape(-1, 3, 3)
+
+    def _add_between(self, fixed: int, moving: int, pose: Floats, noise: gtsam.noiseModel.Base) -> None:
+        self._check_pose(fixed)
+        self._check_pose(moving)
+        self._graph.add(gtsam.BetweenFactorPose2(X(fixed), X(moving), gtsam.Pose2(*pose), noise))
+
+    def _check_pose(self, index: int) -> None:
+        if not self._values.exists(X(index)):
+            raise GraphError(f"a factor names pose {index}, but the graph holds {len(self._poses)} poses")
+
+
+def _noise(covariance: Floats) -> gtsam.noiseModel.Base:
+    return gtsam.noiseModel.Gaussian.Covariance(np.asarray(covariance, float))
+
+
+def _plain(pose: gtsam.Pose2) -> Floats:
+    return np.array([pose.x(), pose.y(), pose.theta()])

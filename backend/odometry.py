@@ -1,0 +1,104 @@
+"""Odometry: the move the wheels claim, corrected by what earlier registrations taught about the wheels.
+
+A Kalman filter (filterpy) keeps five constants of the robot, learnt from the log itself: how far it really goes per
+metre claimed, how far it really turns per radian claimed, how much it turns unnoticed per metre, and where the point
+that is being registered sits before and beside the centre of turning. A registered move that disagrees by more than
+the gate is a slip (or a wrong registration): it teaches nothing and is reported.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from filterpy.kalman import KalmanFilter
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class OdometrySettings:
+    """How far the wheels are trusted."""
+
+    distance_noise: float = 0.05  # of the distance; larger trusts the wheels less
+    turn_noise: float = 0.05  # of the turn
+    turn_per_metre: float = 0.03  # radians of unnoticed turn per metre
+    least_distance: float = 0.01  # metres of noise that even a standing robot has
+    least_turn: float = 0.005  # radians
+    scale_doubt: float = 0.1  # how wrong the scales may be before anything is learnt; larger learns faster
+    bias_doubt: float = 0.1  # the same for the unnoticed turn, radians per metre
+    mount_doubt: float = 0.1  # the same for the sensor's place on the robot, metres
+    slip_gate: float = 16.3  # squared Mahalanobis distance (χ², 3 degrees of freedom, 0.1 %); larger calls less a slip
+
+
+@dataclass(frozen=True, eq=False)
+class Move:
+    """A relative pose (3,) = forward, left, turn with its covariance (3, 3)."""
+
+    pose: Floats
+    covariance: Floats
+
+
+class Odometry:
+    """Predicts moves from wheel moves and learns the wheels' constants from registered ones."""
+
+    def __init__(self, settings: OdometrySettings) -> None:
+        self.settings = settings
+        self._filter = KalmanFilter(dim_x=5, dim_z=3)
+        self._filter.x = np.array([[1.0], [1.0], [0.0], [0.0], [0.0]])
+        doubts = [settings.scale_doubt, settings.scale_doubt, settings.bias_doubt]
+        self._filter.P = np.diag([*doubts, settings.mount_doubt, settings.mount_doubt]) ** 2
+
+    @property
+    def calibration(self) -> Floats:
+        """(5,): metres per metre claimed, radians per radian claimed, radians per metre, mount forward and left."""
+        return np.array(self._filter.x[:, 0])
+
+    @property
+    def calibration_spread(self) -> Floats:
+        """(5,) standard deviations of the calibration."""
+        return np.array(np.sqrt(np.diag(self._filter.P)))
+
+    def predict(self, wheels: Floats) -> Move:
+        """The move to expect when the wheels claim the relative pose `wheels` (3,)."""
+        pose, jacobian = self._moved(wheels)
+        return Move(pose, self._noise(wheels) + jacobian @ self._filter.P @ jacobian.T)
+
+    def learn(self, wheels: Floats, registered: Move) -> float:
+        """Take in a registered move; the squared Mahalanobis distance, over `slip_gate` when it taught nothing."""
+        predicted, jacobian = self._moved(wheels)
+        residual = registered.pose - predicted
+        residual[2] = np.arctan2(np.sin(residual[2]), np.cos(residual[2]))
+        noise = self._noise(wheels) + registered.covariance
+        distance = float(residual @ np.linalg.solve(jacobian @ self._filter.P @ jacobian.T + noise, residual))
+        if distance <= self.settings.slip_gate:
+            measured = residual[:, None] + jacobian @ self._filter.x
+            self._filter.update(measured, R=noise, H=jacobian)
+        return distance
+
+    def _moved(self, wheels: Floats) -> tuple[Floats, Floats]:
+        """The corrected move (3,) of the registered point and its derivative (3, 5) with respect to the constants."""
+        scale, turn_scale, bias, *mount = self.calibration
+        way = float(np.hypot(wheels[0], wheels[1]))
+        # The unnoticed turn happens along the way: the chord turns by half of it.
+        chord = _rotation(bias * way / 2) @ wheels[:2]
+        turn = turn_scale * wheels[2] + bias * way
+        lever = _rotation(turn) - np.eye(2)
+        pose = np.array([*(scale * chord + lever @ mount), turn])
+        swept = np.array([[0.0, -1.0], [1.0, 0.0]]) @ _rotation(turn) @ mount
+        jacobian = np.zeros((3, 5))
+        jacobian[:2, 0] = chord
+        jacobian[:2, 1] = swept * wheels[2]
+        jacobian[:2, 2] = scale * way / 2 * np.array([-chord[1], chord[0]]) + swept * way
+        jacobian[:2, 3:] = lever
+        jacobian[2, 1:3] = wheels[2], way
+        return pose, jacobian
+
+    def _noise(self, wheels: Floats) -> Floats:
+        settings, way = self.settings, float(np.hypot(wheels[0], wheels[1]))
+        distance = settings.distance_noise * way + settings.least_distance
+        turn = settings.turn_noise * abs(wheels[2]) + settings.turn_per_metre * way + settings.least_turn
+        return np.diag([distance, distance, turn]) ** 2
+
+
+def _rotation(angle: float) -> Floats:
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])

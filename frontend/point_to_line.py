@@ -1,0 +1,114 @@
+"""Point to line, compiled: the nearest face that looks the same way, and Gauss–Newton steps on the distance to it."""
+
+import numpy as np
+
+from frontend.compiled import compiled
+from frontend.scan import Floats, Integers
+
+
+@compiled
+def sort_into_cells(points: Floats, cell: float) -> tuple[Integers, Integers, Floats, int, int]:
+    """Grid over points (k, 2): order (k,), start of each cell (c + 1,), corner (2,), columns, rows."""
+    corner = np.array([points[:, 0].min(), points[:, 1].min()]) - 1e-9
+    columns = int((points[:, 0].max() - corner[0]) / cell) + 1
+    rows = int((points[:, 1].max() - corner[1]) / cell) + 1
+    cells = np.empty(len(points), np.int64)
+    counts = np.zeros(columns * rows + 1, np.int64)
+    for i in range(len(points)):
+        cells[i] = int((points[i, 0] - corner[0]) / cell) * rows + int((points[i, 1] - corner[1]) / cell)
+        counts[cells[i] + 1] += 1
+    first = np.cumsum(counts)
+    free = first[:-1].copy()
+    order = np.empty(len(points), np.int64)
+    for i in range(len(points)):
+        order[free[cells[i]]] = i
+        free[cells[i]] += 1
+    return order, first, corner, columns, rows
+
+
+@compiled
+def nearest_face(
+    point: Floats, normal: Floats, points: Floats, normals: Floats,
+    first: Integers, corner: Floats, columns: int, rows: int, limits: Floats,
+) -> int:  # fmt: skip
+    """Index of the nearest of the cell-sorted points (k, 2), or −1. limits: cell, reach, least cosine of normals."""
+    cell, reach, alike = limits[0], limits[1], limits[2]
+    partner, best = -1, reach * reach
+    u, v = int(np.floor((point[0] - corner[0]) / cell)), int(np.floor((point[1] - corner[1]) / cell))
+    span = int(np.ceil(reach / cell))
+    low, high = max(0, v - span), min(rows, v + span + 1)
+    if low >= high:
+        return partner
+    for column in range(max(0, u - span), min(columns, u + span + 1)):
+        for j in range(first[column * rows + low], first[column * rows + high]):
+            dx, dy = points[j, 0] - point[0], points[j, 1] - point[1]
+            d = dx * dx + dy * dy
+            if d < best and normal[0] * normals[j, 0] + normal[1] * normals[j, 1] > alike:
+                partner, best = j, d
+    return partner
+
+
+@compiled
+def linearise(
+    own: Floats, own_normals: Floats, points: Floats, normals: Floats,
+    first: Integers, corner: Floats, columns: int, rows: int, pose: Floats, limits: Floats,
+) -> tuple[Floats, Floats, float, Integers]:  # fmt: skip
+    """Information (3, 3), gradient (3,), weighted mean square and partners (n,) at `pose`.
+
+    limits: cell, reach, least cosine of the normals, Cauchy width.
+    """
+    information, gradient, row = np.zeros((3, 3)), np.zeros(3), np.empty(3)
+    partners = np.full(len(own), -1, np.int64)
+    square, weights = 0.0, 0.0
+    cosine, sine = np.cos(pose[2]), np.sin(pose[2])
+    placed, turned = np.empty(2), np.empty(2)
+    for i in range(len(own)):
+        x, y = cosine * own[i, 0] - sine * own[i, 1], sine * own[i, 0] + cosine * own[i, 1]
+        placed[0], placed[1] = x + pose[0], y + pose[1]
+        turned[0] = cosine * own_normals[i, 0] - sine * own_normals[i, 1]
+        turned[1] = sine * own_normals[i, 0] + cosine * own_normals[i, 1]
+        j = nearest_face(placed, turned, points, normals, first, corner, columns, rows, limits)
+        partners[i] = j
+        if j < 0:
+            continue
+        row[0], row[1] = normals[j, 0], normals[j, 1]
+        row[2] = row[1] * x - row[0] * y
+        e = row[0] * (placed[0] - points[j, 0]) + row[1] * (placed[1] - points[j, 1])
+        w = 1.0 / (1.0 + (e / limits[3]) ** 2)
+        for r in range(3):
+            gradient[r] += w * row[r] * e
+            for c in range(3):
+                information[r, c] += w * row[r] * row[c]
+        square += w * e * e
+        weights += w
+    return information, gradient, square / max(weights, 1e-12), partners
+
+
+@compiled
+def descend(
+    own: Floats, own_normals: Floats, points: Floats, normals: Floats,
+    first: Integers, corner: Floats, columns: int, rows: int,
+    start: Floats, guess: Floats, prior: Floats, passes: Floats,
+) -> tuple[Floats, Floats, float, Integers]:  # fmt: skip
+    """Gauss–Newton from `start`, pulled to `guess` by the information `prior` (3, 3).
+
+    passes: (p, 5) rows of cell, reach, least cosine, Cauchy width, rounds. Returns the pose (3,), the information
+    (3, 3) of the surface alone for an error of one metre, the mean square error and the partners (n,) of the last pass.
+    """
+    pose = start.copy()
+    for k in range(len(passes)):
+        pull = prior * passes[k, 3] ** 2 + 1e-6 * np.eye(3)
+        for _ in range(int(passes[k, 4])):
+            information, gradient, _, partners = linearise(
+                own, own_normals, points, normals, first, corner, columns, rows, pose, passes[k]
+            )
+            offset = pose - guess
+            offset[2] = (offset[2] + np.pi) % (2 * np.pi) - np.pi
+            move = -np.linalg.solve(information + pull, gradient + pull @ offset)
+            pose = pose + move
+            if abs(move[0]) + abs(move[1]) < 1e-4 and abs(move[2]) < 1e-5:
+                break
+    information, _, square, partners = linearise(
+        own, own_normals, points, normals, first, corner, columns, rows, pose, passes[len(passes) - 1]
+    )
+    return pose, information, square, partners

@@ -1,0 +1,89 @@
+"""Loops: a scan laid on an old submap, believed only when surface, visibility and geometry all agree."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from frontend.correlative_search import ScoreGrid, SearchSettings
+from frontend.local_map import Faces, LocalMap
+from frontend.registration import Alignment, Guess, RegistrationSettings, register, register_submaps
+from frontend.rigid_motion import inverse
+from frontend.scan import Floats
+from frontend.visibility import VisibilitySettings, look
+from slam.perception import Percept
+
+
+@dataclass(frozen=True)
+class VerificationSettings:
+    """What a loop must show."""
+
+    registration: RegistrationSettings = field(default_factory=RegistrationSettings)
+    search: SearchSettings = field(default_factory=SearchSettings)
+    visibility: VisibilitySettings = field(default_factory=VisibilitySettings)
+    beside: int = 6  # keyframes on either side of the old pose that make the submap; larger gives more overlap
+    reach: float = 20.0  # metres of submap around the guess
+    close: float = 0.4  # metres of doubt that registration bridges without a search; larger searches less
+    score: float = 0.55  # of the correlative search; larger refuses more
+    matched: float = 0.75  # share of the scan on the submap; larger refuses more
+    confirmed: float = 0.75  # share of the visible submap that the scan confirms; larger refuses more
+    through: float = 0.1  # share of it that the scan saw through; smaller refuses more
+    residual: float = 0.035  # metres rms, or twice the surface's own spread; smaller refuses more
+    firmness: float = 0.05  # smallest over largest information on position; larger refuses long corridors
+
+
+def close_loop(
+    percept: Percept,
+    pose: Floats,
+    recent: Faces,
+    old: Faces,
+    window: tuple[float, float],
+    settings: VerificationSettings,
+) -> Alignment | str:
+    """Lay the scan, now believed to be at `pose` (3,), on old faces; the reason where that is refused.
+
+    recent: faces of the last keyframes, which vote together in a wide search. window: metres and radians.
+    """
+    start: Floats | None = pose
+    if window[0] > settings.close:
+        start = _searched(recent, pose, old, window, settings)
+    if start is None:
+        where = f"within {window[0]:.1f} m and {np.degrees(window[1]):.0f}°"
+        return f"no pose {where} puts {settings.score:.0%} of the surface on the old map"
+    faces = old.facing(start[:2], settings.reach)
+    if len(faces.points) < len(percept.surface.points) / 4:
+        return f"only {len(faces.points)} old faces look this way"
+    guess = Guess(start, np.zeros((3, 3)))
+    found = register(percept.surface, LocalMap.of(faces), guess, settings.registration)
+    return _refusal(percept, found, faces, settings) or found
+
+
+def _searched(
+    recent: Faces, pose: Floats, old: Faces, window: tuple[float, float], settings: VerificationSettings
+) -> Floats | None:
+    """The best pose of the recent submap on the old one, refined by open3d; None under the score."""
+    local = recent.moved(inverse(pose))
+    thinned = local.points[:: max(len(local.points) // 400, 1)]
+    best = ScoreGrid.of(old.points, settings.search).search(thinned, pose, window, settings.score)
+    return None if best is None else register_submaps(local, old, best.pose, settings.close)
+
+
+def _refusal(percept: Percept, found: Alignment, faces: Faces, settings: VerificationSettings) -> str | None:
+    seen = look(percept.fused, found.pose_in_fixed, faces, settings.visibility)
+    widest = max(settings.residual, 2 * float(np.median(percept.surface.spread)))
+    for value, limit, holds, sentence in (
+        (found.matched, settings.matched, found.matched >= settings.matched, "of the scan lies on the old map"),
+        (
+            seen.confirmed,
+            settings.confirmed,
+            seen.confirmed >= settings.confirmed,
+            "of the visible old map is confirmed",
+        ),
+        (seen.through, settings.through, seen.through <= settings.through, "of the visible old map was seen through"),
+    ):
+        if not holds:
+            return f"{value:.0%} {sentence} (limit {limit:.0%})"
+    if found.residual > widest:
+        return f"the faces lie {found.residual * 100:.1f} cm apart (limit {widest * 100:.1f} cm)"
+    if found.firmness < settings.firmness:
+        return f"free to slide along one direction (firmness {found.firmness:.2f}, limit {settings.firmness:.2f})"
+    return None

@@ -1,0 +1,101 @@
+"""Tracking: where a new scan lies on what was just seen, from odometry and registration."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from backend.odometry import Move
+from frontend.correlative_search import ScoreGrid, SearchSettings
+from frontend.local_map import Faces, LocalMap
+from frontend.registration import Alignment, Guess, RegistrationSettings, register
+from frontend.rigid_motion import compose, rotation
+from frontend.scan import Floats
+from frontend.visibility import Visibility, VisibilitySettings, look
+from slam.perception import Percept
+
+
+@dataclass(frozen=True)
+class TrackingSettings:
+    """How a scan is placed on the local map."""
+
+    registration: RegistrationSettings = field(default_factory=RegistrationSettings)
+    search: SearchSettings = field(default_factory=SearchSettings)
+    visibility: VisibilitySettings = field(default_factory=VisibilitySettings)
+    recent: int = 12  # keyframes in the local map; larger bridges more occlusion and drifts less, at more cost
+    reach: float = 20.0  # metres of map around the robot; larger uses far walls
+    good: float = 0.8  # matched and confirmed share under which a wider search is tried; larger searches more often
+    poor: float = 0.4  # matched share under which a scan is left to odometry; larger refuses more scans
+    window_metres: float = 0.4  # of the wider search; larger finds worse guesses and mistakes more
+    window_radians: float = 0.25
+    least_faces: int = 8  # surface points a scan needs to be registered at all
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """Where a scan was put: pose (3,), covariance (3, 3) in its own axes, and why registration was refused, if so.
+
+    matched: what share of the surface found a face, 0 where nothing was registered.
+    """
+
+    pose: Floats
+    covariance: Floats
+    matched: float
+    refused: str | None = None
+
+
+def turned(covariance: Floats, angle: float) -> Floats:
+    """A pose covariance (3, 3) with its place axes turned by `angle`."""
+    axes = np.eye(3)
+    axes[:2, :2] = rotation(angle)
+    return np.asarray(axes @ covariance @ axes.T)
+
+
+def track(percept: Percept, last: Floats, move: Move, recent: list[Faces], settings: TrackingSettings) -> Placed:
+    """Place a scan after `move` from the pose `last` (3,) on the recent faces."""
+    guess = compose(last, move.pose)
+    doubt = turned(move.covariance, last[2])
+    by_wheels = turned(doubt, -guess[2])
+    faces = (
+        Faces.together(recent).facing(guess[:2], settings.reach)
+        if recent
+        else Faces(np.empty((0, 2)), np.empty((0, 2)))
+    )
+    if min(len(faces.points), len(percept.surface.points)) < settings.least_faces:
+        few = (
+            f"{len(percept.surface.points)} surface points against {len(faces.points)} on the map: too few to register"
+        )
+        return Placed(guess, by_wheels, 0.0, few)
+    local_map = LocalMap.of(faces)
+    prior = Guess(guess, np.asarray(np.linalg.inv(doubt), np.float64))
+    found = register(percept.surface, local_map, prior, settings.registration)
+    seen = look(percept.fused, found.pose_in_fixed, faces, settings.visibility)
+    if min(found.matched, seen.confirmed) < settings.good:
+        found, seen = _wider(percept, local_map, prior, (found, seen), settings)
+    if found.matched < settings.poor:
+        reason = (
+            f"only {found.matched:.0%} of {len(percept.surface.points)} surface points lie on the map "
+            f"({settings.poor:.0%} needed)"
+        )
+        return Placed(guess, by_wheels, found.matched, reason)
+    covariance: Floats = np.asarray(np.linalg.inv(found.information + prior.information), np.float64)
+    return Placed(found.pose_in_fixed, turned(covariance, -found.pose_in_fixed[2]), found.matched)
+
+
+def _wider(
+    percept: Percept,
+    local_map: LocalMap,
+    prior: Guess,
+    so_far: tuple[Alignment, Visibility],
+    settings: TrackingSettings,
+) -> tuple[Alignment, Visibility]:
+    """Search a window around the guess, and keep the better of both answers."""
+    grid = ScoreGrid.of(local_map.faces.points, settings.search)
+    window = (settings.window_metres, settings.window_radians)
+    best = grid.search(percept.surface.points, prior.pose, window, settings.poor)
+    if best is None:
+        return so_far
+    weak = Guess(prior.pose, prior.information * 0.05)
+    found = register(percept.surface, local_map, weak, settings.registration, start=best.pose)
+    seen = look(percept.fused, found.pose_in_fixed, local_map.faces, settings.visibility)
+    better = found.matched + seen.confirmed > so_far[0].matched + so_far[1].confirmed + 0.05
+    return (found, seen) if better else so_far
