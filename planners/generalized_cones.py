@@ -1,0 +1,142 @@
+"""Paths along the spines of generalized cones (Brooks 1983; Flynn 1988, §4.3): fast, in the middle of free space.
+
+The robot translates along spines and turns where they cross. The planner is a heuristic: it finds a path or it does
+not, and never says that there is none.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planners.freeways import facing_pairs, spines
+from planners.headings import Arc, least_turning
+from planners.path import Answer, Cone, Path
+from planners.poses import Pose, standing
+from planners.robot import Robot
+from planners.slices import Slices, sliced
+from planners.spine_graph import SpineGraph, graph_of
+from planners.spine_search import Route, route
+from planners.way_in import Body, Chain, common, departures, entrances, way
+from planners.world import World
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ConesSettings:
+    """Opinions of the generalized-cones planner."""
+
+    slice_length: float = 0.5  # in widths of the robot; larger is faster to prepare and loses orientations
+    crowding: float = (
+        0.4  # a cone needs a place where no wall is nearer than this share of its own; larger: fewer cones
+    )
+    entrances: int = 16  # spines tried from start and goal; larger finds more and asks more time of every query
+
+
+@dataclass(frozen=True, eq=False)
+class Cones:
+    """A world prepared for one robot."""
+
+    world: World
+    robot: Robot
+    settings: ConesSettings
+    body: Body
+    spines: Floats
+    slices: Slices
+    graph: SpineGraph
+
+
+def plan(world: World, robot: Robot, start: Pose, goal: Pose, settings: ConesSettings) -> Answer:
+    """A path of `robot` in `world` from `start` to `goal` (3,) along the spines of cones, or why none was found."""
+    return query(prepare(world, robot, settings), start, goal)
+
+
+def prepare(world: World, robot: Robot, settings: ConesSettings) -> Cones:
+    """All cones with their legal orientations and crossings: what many queries share."""
+    body = _body(world, robot, settings)
+    lines = np.column_stack([world.normals, world.offsets])
+    pairs = facing_pairs(body.ends, world.normals, world.offsets)
+    runs = _distinct(spines(pairs, body.ends, lines, robot.width, settings.crowding), world.grid)
+    extent = np.array([robot.radius, world.grid, robot.reach + world.grid])
+    pieces, legal, counts, sizes = sliced(runs, body.ends, body.polar, extent, body.step)
+    first = np.concatenate([[0], np.cumsum(sizes[sizes > 0])]).astype(np.int64)
+    slices = Slices(first, pieces, legal, counts)
+    return Cones(world, robot, settings, body, runs[sizes > 0], slices, graph_of(slices))
+
+
+def query(cones: Cones, start: Pose, goal: Pose) -> Answer:
+    """A path from `start` to `goal` (3,) with a heading, nan or None for any; or why none was found."""
+    begin = standing(cones.world, cones.robot, start, "start")
+    end = standing(cones.world, cones.robot, goal, "goal")
+    chain = _straight(cones, begin, end) or _through(cones, begin, end)
+    if chain is None:
+        return Answer("not found", "no way along the spines was found", cones=())
+    poses = _poses(chain)
+    return Answer("path", "a path along spines was found", Path(poses, 0.0, "legal orientations"))
+
+
+def _body(world: World, robot: Robot, settings: ConesSettings) -> Body:
+    corners = robot.corners
+    polar = np.column_stack([np.hypot(corners[:, 0], corners[:, 1]), np.arctan2(corners[:, 1], corners[:, 0])])
+    ends = world.edges.reshape(-1, 4).copy()
+    return Body(polar, robot.radius, ends, world.grid, settings.slice_length * robot.width)
+
+
+def _distinct(runs: Floats, grid: float) -> Floats:
+    """Runs without repetitions: walls of one line give the same spine over and over."""
+    _, first = np.unique(np.round(runs[:, :4] / (64 * grid)), axis=0, return_index=True)
+    return np.ascontiguousarray(runs[np.sort(first)])
+
+
+def _straight(cones: Cones, begin: Floats, end: Floats) -> Chain | None:
+    """The straight way, if some heading is legal all along it."""
+    here = way(cones.body, end[:2], end[:2])[0]
+    if np.isfinite(end[2]):
+        here = np.array([arc for arc in here if (end[2] - arc[0]) % (2 * np.pi) <= arc[1] - arc[0]]).reshape(-1, 2)
+    for chain, arrived in departures(cones.body, begin, end[:2]):
+        for turned, _, arc_end in common(np.array([arrived]), here):
+            last: Arc = (float(end[2]), float(end[2])) if np.isfinite(end[2]) else arc_end
+            points = (*chain.points, end[:2], end[:2])
+            return Chain(points, (*chain.legs, turned, last), (*chain.turns, arrived, arc_end))
+    return None
+
+
+def _through(cones: Cones, begin: Floats, end: Floats) -> Chain | None:
+    """The shortest way through the graph of spines."""
+    total, most = len(cones.graph.arcs), cones.settings.entrances
+    into, out = _shortest(cones, begin, most), _shortest(cones, end, most)
+    entry, leave = np.full(total, np.inf), np.full(total, np.inf)
+    for lengths, chains in ((entry, into), (leave, out)):
+        for node, chain in chains.items():
+            lengths[node] = chain.length
+    found = route(cones.graph, entry, leave, end[:2])
+    return _joined(cones.graph, into, found, out) if isinstance(found, Route) else None
+
+
+def _shortest(cones: Cones, pose: Floats, most: int) -> dict[int, Chain]:
+    """The shortest way in for every node that a pose reaches."""
+    best: dict[int, Chain] = {}
+    for node, chain in entrances(cones.body, cones.slices, cones.graph, pose, most):
+        if node not in best or chain.length < best[node].length:
+            best[node] = chain
+    return best
+
+
+def _joined(graph: SpineGraph, into: dict[int, Chain], found: Route, out: dict[int, Chain]) -> Chain:
+    first, last = into[int(found.nodes[0])], out[int(found.nodes[-1])].reversed()
+    between = [graph.stop_points[graph.node_stop[node]] for node in found.nodes[1:]]
+    legs: list[Arc] = [(float(low), float(high)) for low, high in graph.edge_arcs[found.edges]]
+    turns: list[Arc] = [(float(low), float(high)) for low, high in graph.arcs[found.nodes]]
+    points = (*first.points, *between, *last.points[1:])
+    return Chain(points, (*first.legs, *legs, *last.legs), (*first.turns, *turns, *last.turns))
+
+
+def _poses(chain: Chain) -> Floats:
+    """The motion (p, 3): along every leg at its heading, turning on the spot between legs."""
+    headings = least_turning(chain.legs, chain.turns)
+    points = np.array(chain.points)
+    poses = np.concatenate([np.column_stack([points[:-1], headings]), np.column_stack([points[1:], headings])], axis=1)
+    flat = poses.reshape(-1, 3)
+    moved = np.concatenate([[True], np.abs(np.diff(flat, axis=0)).max(axis=1) > 0])
+    return flat[moved]
