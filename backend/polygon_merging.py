@@ -5,7 +5,7 @@ says who measured it. A view can be added, moved and read at any time, in any or
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
@@ -16,10 +16,14 @@ from shapely import MultiPolygon
 from backend.ballots import ballot_of
 from backend.contours import as_polygons, assemble, contours
 from backend.evidence import Ballot, Counts, EvidenceGrid
-from backend.provenance import Samples, boundary_edges, label_edges
+from backend.provenance import boundary_edges, label_edges
 from backend.room_map import RoomMap
+from backend.samples import Samples
+from backend.settling import SettleSettings, settle
+from backend.snapping import snap_ring, snap_view
 from backend.surfaces import Surfaces, surfaces_of
 from backend.view import View, place
+from backend.wall_faces import FaceSettings, WallFaces, fuse_faces
 
 Floats = NDArray[np.float64]
 
@@ -38,6 +42,8 @@ class MergeSettings:
     wall_strip: float = 0.06  # larger holds walls better against misplaced views, and closes thinner slits
     opening: float = 0.05  # larger removes wider slits and spikes of free space
     inset: float = 0.05  # larger keeps plans farther from surfaces
+    settling: SettleSettings = field(default_factory=SettleSettings)
+    faces: FaceSettings = field(default_factory=FaceSettings)
     reach: float = 0.06  # larger lets samples farther off support an edge
 
 
@@ -61,41 +67,64 @@ class Merger:
         """Let the view `index` vote from its pose (3,). Raises MergingError if it already did."""
         if index in self._placed:
             raise MergingError(f"view {index} is in the map already: move it instead")
-        self._place(index, view, surfaces_of(view, self.settings.piece, self.settings.finest), pose)
+        surfaces = surfaces_of(view, self.settings.piece, self.settings.finest)
+        ballot = self._ballot(surfaces, place(surfaces.ring, pose), place(view.origin[None], pose)[0])
+        self._evidence.cast(ballot, 1)
+        self._placed[index] = _Placed(view, surfaces, np.asarray(pose, dtype=np.float64), ballot)
 
     def move(self, index: int, pose: Floats) -> None:
         """Take the votes of a view back and cast them from another pose (3,)."""
         if index not in self._placed:
             raise MergingError(f"view {index} cannot move: it was never added")
-        placed = self._placed[index]
+        placed = self._placed.pop(index)
         self._evidence.cast(placed.ballot, -1)
-        self._place(index, placed.view, placed.surfaces, pose)
+        self.add(placed.view, pose, index)
 
     def result(self) -> RoomMap:
         """The room map of all views so far."""
+        local = self._samples()
+        poses = settle(local.where(local.sure), np.array([p.pose for _, p in self._in_order()]), self.settings.settling)
+        samples = local.placed(poses)
+        faces = fuse_faces(samples, self.settings.faces)
+        self._vote_again(poses, faces)
         counts = self._evidence.counts()
-        free = _free_space(counts, self.settings)
-        edges = boundary_edges(free)
-        labelled = label_edges(edges, self._samples(), counts, self.settings.reach)
+        free = _free_space(counts, faces, self.settings)
+        labelled = label_edges(boundary_edges(free), samples, counts, self.settings.reach)
         safety = as_polygons(free.buffer(-self.settings.inset, join_style="mitre"))
         return RoomMap(free, safety, labelled, (), (), np.empty((0, 2)))
 
-    def _place(self, index: int, view: View, surfaces: Surfaces, pose: Floats) -> None:
-        ring, origin = place(surfaces.ring, pose), place(view.origin[None], pose)[0]
-        ballot = ballot_of(ring, surfaces.real, origin, self.settings.wall_strip, self.settings.cell)
-        self._evidence.cast(ballot, 1)
-        self._placed[index] = _Placed(view, surfaces, np.asarray(pose, dtype=np.float64), ballot)
+    def _in_order(self) -> list[tuple[int, _Placed]]:
+        return sorted(self._placed.items())
+
+    def _ballot(self, surfaces: Surfaces, ring: Floats, origin: Floats) -> Ballot:
+        """Votes on whole millimetres, so that a view that hardly moved need not vote again."""
+        ring = np.round(ring, 3)
+        return ballot_of(ring, surfaces.real, origin, self.settings.wall_strip, self.settings.cell)
+
+    def _vote_again(self, poses: Floats, faces: WallFaces) -> None:
+        """Every view votes with its measured corners on the fused faces; only changed ballots are cast anew."""
+        end = 0
+        for (index, placed), pose in zip(self._in_order(), poses, strict=True):
+            surfaces = placed.surfaces
+            start, end = end, end + len(surfaces.corner)
+            ring, origin = place(surfaces.ring, pose), place(placed.view.origin[None], pose)[0]
+            snapped = snap_view(ring, origin, surfaces, faces.label[start:end], faces)
+            ballot = self._ballot(surfaces, snapped, origin)
+            if not np.array_equal(ballot.free, placed.ballot.free):
+                self._evidence.cast(placed.ballot, -1)
+                self._evidence.cast(ballot, 1)
+                self._placed[index] = replace(placed, ballot=ballot)
 
     def _samples(self) -> Samples:
-        """All measured corners, placed, view by view in the order of their indices."""
-        everyone = sorted(self._placed.items())
-        turn = np.array([0.0, 0.0, 1.0])
+        """All measured corners in the frames of their views, view by view in the order of their indices."""
+        surfaces = [placed.surfaces for _, placed in self._in_order()]
         return Samples(
-            np.concatenate([place(p.surfaces.ring[p.surfaces.corner], p.pose) for _, p in everyone]),
-            np.concatenate([place(p.surfaces.normals, p.pose * turn) for _, p in everyone]),
-            np.concatenate([np.full(len(p.surfaces.corner), index) for index, p in everyone]),
-            np.concatenate([p.surfaces.sigma for _, p in everyone]),
-            np.concatenate([p.surfaces.weight for _, p in everyone]),
+            np.concatenate([s.ring[s.corner] for s in surfaces]),
+            np.concatenate([s.normals for s in surfaces]),
+            np.repeat(np.arange(len(surfaces)), [len(s.corner) for s in surfaces]),
+            np.concatenate([s.sigma for s in surfaces]),
+            np.concatenate([s.weight for s in surfaces]),
+            np.concatenate([s.sure for s in surfaces]),
         )
 
 
@@ -107,11 +136,12 @@ def merge_views(views: Iterable[View], poses: Floats, settings: MergeSettings | 
     return merger.result()
 
 
-def _free_space(counts: Counts, settings: MergeSettings) -> MultiPolygon:
+def _free_space(counts: Counts, faces: WallFaces, settings: MergeSettings) -> MultiPolygon:
     """Cells more views hold for free than for wall, opened, as polygons."""
     radius = round(settings.opening / settings.cell)
     y, x = np.mgrid[-radius : radius + 1, -radius : radius + 1]
     mask = ndimage.binary_opening(counts.free > counts.wall, x**2 + y**2 <= radius**2 + 0.5)
-    rings = [(ring + counts.corner) * counts.cell for ring in contours(mask)]
+    traced = [(ring + counts.corner) * counts.cell for ring in contours(mask)]
+    rings = [snap_ring(ring, faces, settings.reach) for ring in traced]
     free = assemble(rings)
     return as_polygons(shapely.simplify(free, 0.75 * settings.cell))

@@ -1,7 +1,5 @@
 """Provenance: every edge of the merged boundary says which views measured it, and how many saw through it."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import shapely
 from numpy.typing import NDArray
@@ -9,20 +7,10 @@ from shapely import MultiPolygon
 
 from backend.evidence import Counts
 from backend.room_map import MapEdge, MapEdgeKind
+from backend.samples import Samples
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-
-@dataclass(frozen=True, eq=False)
-class Samples:
-    """Placed surface samples of all views: points and normals (n, 2), view (n,) index, sigma and weight (n,) metres."""
-
-    points: Floats
-    normals: Floats
-    view: Ints
-    sigma: Floats
-    weight: Floats
 
 
 def boundary_edges(free: MultiPolygon) -> Floats:
@@ -62,7 +50,7 @@ def label_edges(edges: Floats, samples: Samples, counts: Counts, reach: float) -
 
 def _supports(edges: Floats, inward: Floats, samples: Samples, reach: float) -> tuple[Ints, Ints]:
     """Pairs (edge, sample) where the sample lies on the edge and faces its free side."""
-    tree = shapely.STRtree(np.atleast_1d(shapely.linestrings(edges)))
+    tree = shapely.STRtree([shapely.LineString(edge) for edge in edges])
     sample, edge = tree.query(shapely.points(samples.points), predicate="dwithin", distance=reach)
     same_side = np.sum(samples.normals[sample] * inward[edge], axis=1) > 0.5
     return edge[same_side], sample[same_side]

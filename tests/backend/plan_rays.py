@@ -202,4 +202,4 @@ def scattered_poses(plan: Plan, count: int, rng: np.random.Generator) -> Floats:
 
 def misplaced(poses: Floats, metres: float, degrees: float, rng: np.random.Generator) -> Floats:
     """The poses (n, 3) with Gaussian errors."""
-    return poses + rng.normal(0, 1, poses.shape) * np.array([metres, metres, np.radians(degrees)])
+    return np.asarray(poses + rng.normal(0, 1, poses.shape) * np.array([metres, metres, np.radians(degrees)]))
