@@ -14,7 +14,7 @@ from frontend.compiled import compiled
 from frontend.fusion import FusedScan, ReadingKind
 from frontend.rigid_motion import transform
 from frontend.scan import Booleans, Floats, Integers
-from frontend.surface import Surface, line_fits
+from frontend.surface import Surface, fit_reaches, line_fits
 
 
 class ContourKind(IntEnum):
@@ -46,7 +46,9 @@ class ContourSettings:
     least_grazing: float = 0.35  # radians a surface leaves the beam at; larger calls more steep walls occlusions
     noise_gate: float = 4.0  # standard deviations; larger joins more depth steps into surfaces
     longest_gap: float = 2.0  # metres two readings of one straight wall may lie apart; larger trusts bare grazing walls
-    surface_reach: int = 3  # beams to each side of a line fit; larger smooths more and rounds corners
+    surface_reach: int = 3  # beams to each side of a line fit at least; larger smooths more and rounds corners
+    surface_sureness: float = 0.06  # radians to which a fit should know its direction; smaller fits longer stretches
+    surface_widest: float = 0.2  # metres to each side of a fit at most beyond that; larger smooths fine scans more
     surface_thickness: float = 0.04  # metres at least; larger keeps rougher surfaces for registration
 
 
@@ -103,7 +105,11 @@ def trace(fused: FusedScan, settings: ContourSettings) -> Contour:
     """Join the readings in order, fill the gaps, and say of every edge what it is."""
     ends = fused.ranges[:, None] * np.column_stack([np.cos(fused.bearings), np.sin(fused.bearings)])
     joints = _edges_between(fused, ends, settings)
-    normals, thickness = line_fits(ends, joints == EdgeKind.REAL, settings.surface_reach, np.zeros(2))
+    reaches = fit_reaches(
+        fused.bearings, fused.ranges, fused.spread,
+        settings.surface_sureness, settings.surface_reach, settings.surface_widest,
+    )  # fmt: skip
+    normals, thickness = line_fits(ends, joints == EdgeKind.REAL, reaches, np.zeros(2))
     corners, kinds, edges, readings = ends, _point_kinds(fused.kinds), joints, np.arange(ends.shape[0])
     spread = fused.spread
     if not fused.scan.full_turn:  # the view ends at the sensor, on both sides

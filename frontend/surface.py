@@ -21,18 +21,31 @@ class Surface:
     reading: Integers
 
 
+def fit_reaches(bearings: Floats, ranges: Floats, spread: Floats, surest: float, least: int, widest: float) -> Integers:
+    """How many neighbours (n,) to each side a line fit needs to know its direction to `surest` radians.
+
+    The direction of n readings over a length L has the standard deviation σ√12 / (L√n); fine beams on near walls need
+    many of them. Never under `least` neighbours nor over `widest` metres to a side.
+    """
+    steps = np.maximum(ranges * np.median(np.diff(bearings)), 1e-6)
+    needed = (np.sqrt(12) * spread / (surest * 2 * np.sqrt(2) * steps)) ** (2 / 3)
+    reaches: Integers = np.maximum(np.ceil(np.minimum(needed, widest / steps)), least).astype(np.int64)
+    return reaches
+
+
 @compiled
-def line_fits(points: Floats, joined: Booleans, reach: int, origin: Floats) -> tuple[Floats, Floats]:
+def line_fits(points: Floats, joined: Booleans, reaches: Integers, origin: Floats) -> tuple[Floats, Floats]:
     """Normals (n, 2) and thickness (n,) of the best line through each of the points (n, 2) and its chain neighbours.
 
-    joined: (n,) whether a point and the next (cyclically) lie on one surface. Of the windows around, before and
-    behind a point the thinnest wins, so a corner keeps the normals of both its walls. nan under three points.
+    joined: (n,) whether a point and the next (cyclically) lie on one surface. reaches: (n,) neighbours to each side.
+    Of the windows around, before and behind a point the thinnest wins, so a corner keeps the normals of both its
+    walls. nan under three points.
     """
     n = points.shape[0]
     normals = np.full((n, 2), np.nan)
     thickness = np.full(n, np.nan)
     for i in range(n):
-        before, after = 0, 0
+        before, after, reach = 0, 0, reaches[i]
         while before < reach and joined[(i - before - 1) % n]:
             before += 1
         while after < reach and joined[(i + after) % n]:

@@ -3,22 +3,37 @@
 The facts below are those of the robot that writes these files: a LEGO base under a Hokuyo URG-04LX.
 """
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from frontend.scan import Floats, Scan, Sensor
+from slam.readers.latency import lag, straighten, turns_seen
 from slam.readers.recording import Recording, RecordingError
 from slam.readers.sieve import LineError, Sieve, in_time, numbers
 
 METRES_PER_TICK = 0.349e-3
 WHEEL_BASE = 0.173
 BEAM_STEP = 2 * np.pi / 1024
+SECONDS_PER_RADIAN = 0.1 / (2 * np.pi)  # the scanner's mirror turns ten times a second
 SCANNER = Sensor("lidar", max_range=4.0, min_range=0.02, range_noise=0.01, quantum=0.001, mount=(0.03, 0.0, 0.0))
 
 
+@dataclass(frozen=True, eq=False)
+class Wheels:
+    """Dead-reckoned poses (m, 3), headings unwrapped, at times (m,) in seconds."""
+
+    times: Floats
+    poses: Floats
+
+    def at(self, times: Floats) -> Floats:
+        """Poses (n, 3) at any times (n,)."""
+        return np.column_stack([np.interp(times, self.times, self.poses[:, axis]) for axis in range(3)])
+
+
 def read_wheel_ticks(folder: Path, strict: bool) -> Recording:
-    """The drive, dead-reckoned from (0, 0, 0); each scan with the odometry at its own time."""
+    """The drive, dead-reckoned from (0, 0, 0); each scan straightened, with the odometry of the moment it was made."""
     motors = Sieve(_only(folder, "*_motors.txt"), strict=strict)
     ticks = np.array(list(motors.through(motors.lines(), _ticks)))
     motors.check()
@@ -29,16 +44,25 @@ def read_wheel_ticks(folder: Path, strict: bool) -> Recording:
     # Several counts of one millisecond: the last one holds.
     last = np.append(np.diff(times) > 0, True)
 
-    def scan(text: str) -> Scan:
-        moment, ranges = _ranges(text)
-        odometry = np.array([float(np.interp(moment, times[last], poses[last, axis])) for axis in range(3)])
-        bearings = BEAM_STEP * (np.arange(ranges.size, dtype=np.float64) - ranges.size // 2)
-        return Scan(bearings, ranges, SCANNER, odometry, moment / 1000)
-
     sieve = Sieve(_only(folder, "*_scan.txt"), strict=strict)
-    scans = tuple(sieve.through(sieve.lines(), in_time(scan)))
+    arrived = list(sieve.through(sieve.lines(), in_time(_scan)))
     sieve.check()
+    scans = straightened(arrived, Wheels(times[last] / 1000, poses[last]))
     return Recording(sieve.path.name.removesuffix("_scan.txt"), scans, tuple(motors.damaged + sieve.damaged))
+
+
+def straightened(arrived: list[Scan], wheels: Wheels) -> tuple[Scan, ...]:
+    """The scans at the middle of their sweeps, by the wheels' clock, as if the robot had stood still."""
+    beams = min(scan.ranges.size for scan in arrived)
+    arrivals = np.array([scan.time for scan in arrived])
+    turns = turns_seen(np.array([scan.ranges[:beams] for scan in arrived]), BEAM_STEP)
+    times = arrivals - lag(arrivals, turns, wheels.times, wheels.poses[:, 2])
+    scans = []
+    for scan, time, pose in zip(arrived, times, wheels.at(times), strict=True):
+        sweep = wheels.at(time + SECONDS_PER_RADIAN * scan.bearings)
+        bearings, ranges = straighten(scan.bearings, scan.ranges, sweep, pose, SCANNER.mount[0])
+        scans.append(Scan(bearings, ranges, SCANNER, pose, float(time)))
+    return tuple(scans)
 
 
 def dead_reckon(travelled: Floats, wheel_base: float) -> Floats:
@@ -71,8 +95,8 @@ def _ticks(text: str) -> Floats:
     return numbers([fields[1], fields[2], fields[6]])
 
 
-def _ranges(text: str) -> tuple[float, Floats]:
-    """S, milliseconds, n, n ranges in millimetres: milliseconds and ranges (n,) in metres."""
+def _scan(text: str) -> Scan:
+    """S, milliseconds, n, n ranges in millimetres: the scan as it arrived, not yet beside the wheels."""
     fields = text.split()
     if len(fields) < 3 or fields[0] != "S":
         raise LineError(f"{len(fields)} fields beginning {fields[:1]}, but 'S', a time and a count are needed")
@@ -83,4 +107,6 @@ def _ranges(text: str) -> tuple[float, Floats]:
     if (metres < 0).any() or np.isnan(metres).any():
         raise LineError("a range is negative or NaN")
     # Below the scanner's least range it writes error codes.
-    return float(moment), np.where(metres < SCANNER.min_range, np.nan, metres)
+    ranges = np.where(metres < SCANNER.min_range, np.nan, metres)
+    bearings = BEAM_STEP * (np.arange(ranges.size, dtype=np.float64) - ranges.size // 2)
+    return Scan(bearings, ranges, SCANNER, np.zeros(3), float(moment) / 1000)
