@@ -74,7 +74,7 @@ def assemble(rings: list[Floats]) -> MultiPolygon:
         if len(around):
             inside[int(around[np.argmin(areas[around])])].append(hole)
     whole = [ring.difference(shapely.union_all(cut)) if cut else ring for ring, cut in zip(outer, inside, strict=True)]
-    return as_polygons(shapely.GeometryCollection(whole))
+    return as_polygons(shapely.union_all(whole))
 
 
 def as_polygons(shape: BaseGeometry) -> MultiPolygon:

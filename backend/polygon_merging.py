@@ -8,19 +8,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
-from scipy import ndimage
-from shapely import MultiPolygon
 
 from backend.ballots import ballot_of
-from backend.contours import as_polygons, assemble, contours
-from backend.evidence import Ballot, Counts, EvidenceGrid
-from backend.provenance import boundary_edges, label_edges
+from backend.evidence import Ballot, EvidenceGrid
+from backend.map_reading import PlacedViews, ReadingSettings, read_map
 from backend.room_map import RoomMap
 from backend.samples import Samples
 from backend.settling import SettleSettings, settle
-from backend.snapping import snap_ring, snap_view
+from backend.snapping import snap_view
 from backend.surfaces import Surfaces, surfaces_of
 from backend.view import View, place
 from backend.wall_faces import FaceSettings, WallFaces, fuse_faces
@@ -40,11 +36,9 @@ class MergeSettings:
     piece: float = 0.10  # larger samples long edges more sparsely
     finest: float = 0.01  # no spread is believed below this; larger blurs good sensors
     wall_strip: float = 0.06  # larger holds walls better against misplaced views, and closes thinner slits
-    opening: float = 0.05  # larger removes wider slits and spikes of free space
-    inset: float = 0.05  # larger keeps plans farther from surfaces
     settling: SettleSettings = field(default_factory=SettleSettings)
     faces: FaceSettings = field(default_factory=FaceSettings)
-    reach: float = 0.06  # larger lets samples farther off support an edge
+    reading: ReadingSettings = field(default_factory=ReadingSettings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,17 +75,31 @@ class Merger:
         self.add(placed.view, pose, index)
 
     def result(self) -> RoomMap:
-        """The room map of all views so far."""
+        """The room map of all views so far. Raises MergingError when there are none."""
+        if not self._placed:
+            raise MergingError("a map needs one view at least")
         local = self._samples()
         poses = settle(local.where(local.sure), np.array([p.pose for _, p in self._in_order()]), self.settings.settling)
         samples = local.placed(poses)
         faces = fuse_faces(samples, self.settings.faces)
         self._vote_again(poses, faces)
-        counts = self._evidence.counts()
-        free = _free_space(counts, faces, self.settings)
-        labelled = label_edges(boundary_edges(free), samples, counts, self.settings.reach)
-        safety = as_polygons(free.buffer(-self.settings.inset, join_style="mitre"))
-        return RoomMap(free, safety, labelled, (), (), np.empty((0, 2)))
+        return read_map(self._placed_views(poses), samples, faces, self._evidence.counts(), self.settings.reading)
+
+    def _placed_views(self, poses: Floats) -> PlacedViews:
+        """The views as they voted."""
+        everyone = self._in_order()
+        origins = [place(placed.view.origin[None], pose)[0] for (_, placed), pose in zip(everyone, poses, strict=True)]
+        openings = [
+            place(p.view.openings.reshape(-1, 2), pose).reshape(-1, 2, 2)
+            for (_, p), pose in zip(everyone, poses, strict=True)
+        ]
+        return PlacedViews(
+            np.array([index for index, _ in everyone]),
+            [placed.ballot.free * self.settings.cell for _, placed in everyone],
+            [placed.surfaces.real for _, placed in everyone],
+            np.array(origins),
+            openings,
+        )
 
     def _in_order(self) -> list[tuple[int, _Placed]]:
         return sorted(self._placed.items())
@@ -134,14 +142,3 @@ def merge_views(views: Iterable[View], poses: Floats, settings: MergeSettings | 
     for index, (view, pose) in enumerate(zip(views, poses, strict=True)):
         merger.add(view, pose, index)
     return merger.result()
-
-
-def _free_space(counts: Counts, faces: WallFaces, settings: MergeSettings) -> MultiPolygon:
-    """Cells more views hold for free than for wall, opened, as polygons."""
-    radius = round(settings.opening / settings.cell)
-    y, x = np.mgrid[-radius : radius + 1, -radius : radius + 1]
-    mask = ndimage.binary_opening(counts.free > counts.wall, x**2 + y**2 <= radius**2 + 0.5)
-    traced = [(ring + counts.corner) * counts.cell for ring in contours(mask)]
-    rings = [snap_ring(ring, faces, settings.reach) for ring in traced]
-    free = assemble(rings)
-    return as_polygons(shapely.simplify(free, 0.75 * settings.cell))

@@ -1,0 +1,86 @@
+"""Hidden objects: what the views enclose without anyone seeing it whole (Flynn 1988, §4.1, Figs 11–12).
+
+A hole of the free space is an object. It is measured if its boundary is mostly surface somebody saw, and
+inferred if it is mostly line of sight: "the robot should infer that a small object lies in the middle of the room".
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+from shapely import MultiPolygon, Polygon
+
+from backend.contours import as_polygons
+from backend.room_map import MapEdge, MapEdgeKind, Obstacle
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ObjectSettings:
+    """Opinions about objects."""
+
+    sliver: float = 0.005  # m²; larger forgets bigger unconfirmed holes
+    largest: float = 6.0  # m²; larger calls bigger blocks of building an object
+    wall: float = 0.25  # metres of mean thickness; larger takes thicker long things for walls
+    longest: float = 1.5  # metres; larger lets longer thin things pass as objects
+    real_share: float = 0.3  # larger asks for more seen surface before an object counts as measured
+    pocket: float = 0.30  # metres; larger infers objects from wider notches in the boundary
+
+
+def without_slivers(free: MultiPolygon, surface: Floats, reach: float, settings: ObjectSettings) -> MultiPolygon:
+    """The free space with its small holes filled that no measured point (n, 2) lies within `reach` metres of."""
+    slivers = [Polygon(ring) for part in free.geoms for ring in part.interiors]
+    slivers = [hole for hole in slivers if hole.area <= settings.sliver]
+    measured = cKDTree(surface)
+    empty = [hole for hole in slivers if not _measured(hole, measured, reach)]
+    return as_polygons(shapely.union_all([free, *empty]))
+
+
+def _measured(hole: Polygon, surface: cKDTree, reach: float) -> bool:
+    outline = shapely.segmentize(hole.exterior, reach)
+    distance, _ = surface.query(np.asarray(outline.coords), distance_upper_bound=reach)
+    return bool(np.isfinite(distance).any())
+
+
+def objects_in(free: MultiPolygon, edges: tuple[MapEdge, ...], settings: ObjectSettings) -> tuple[Obstacle, ...]:
+    """Measured and inferred objects: holes of the free space, and pockets of its outer boundary that nobody saw."""
+    holes = [Polygon(ring) for part in free.geoms for ring in part.interiors]
+    things = [hole for hole in holes if hole.area <= settings.largest and not _is_wall(hole, settings)]
+    tree = shapely.STRtree([shapely.LineString([edge.start, edge.end]) for edge in edges])
+    judged = [_judged(thing, _edges_of(thing, tree, edges), settings) for thing in things]
+    pockets = [_judged(pocket, _edges_of(pocket, tree, edges), settings) for pocket in _pockets(free, settings)]
+    return tuple(judged + [pocket for pocket in pockets if pocket.inferred])
+
+
+def _is_wall(hole: Polygon, settings: ObjectSettings) -> bool:
+    """Whether the hole is a stretch of wall between rooms: long, and thin for its length."""
+    length = 0.5 * hole.exterior.length
+    return length > settings.longest and hole.area / length < settings.wall
+
+
+def _edges_of(thing: Polygon, tree: shapely.STRtree, edges: tuple[MapEdge, ...]) -> list[MapEdge]:
+    """The map's edges that run along the thing's outline."""
+    near = tree.query(thing.exterior.buffer(1e-4), predicate="covers")
+    return [edges[int(i)] for i in near]
+
+
+def _judged(thing: Polygon, around: list[MapEdge], settings: ObjectSettings) -> Obstacle:
+    """The object with what speaks for it: seen surface, or else the views' lines of sight around it."""
+    real = [edge for edge in around if edge.kind == MapEdgeKind.REAL]
+    seen = sum(float(np.hypot(e.end[0] - e.start[0], e.end[1] - e.start[1])) for e in real)
+    views = np.unique(np.concatenate([np.empty(0, dtype=np.int64), *(edge.views for edge in real)]))
+    return Obstacle(thing, seen < settings.real_share * thing.exterior.length, len(views), views)
+
+
+def _pockets(free: MultiPolygon, settings: ObjectSettings) -> list[Polygon]:
+    """Notches of the outer boundary, narrower than twice the pocket width, at least one tenth of it deep and wide."""
+    radius = settings.pocket
+    solid = shapely.union_all([Polygon(part.exterior) for part in free.geoms])
+    notches = solid.buffer(radius, join_style="mitre").buffer(-radius, join_style="mitre").difference(solid)
+    notches = notches.buffer(-0.1 * radius, join_style="mitre").buffer(0.1 * radius, join_style="mitre")
+    return [
+        notch for notch in shapely.get_parts(notches) if isinstance(notch, Polygon) and notch.area > settings.sliver
+    ]

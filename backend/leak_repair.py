@@ -1,0 +1,92 @@
+"""Leaks: faces that views measured but the votes opened, closed again where nobody saw through from the front.
+
+Behind a thin panel the views of the other side outvote its face, although none of them contradicts it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely import MultiPolygon
+
+from backend.cell_lines import distinct_views
+from backend.evidence import Counts
+from backend.samples import Samples
+from backend.sight import Sight
+from backend.wall_faces import WallFaces
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+BIN = 0.10  # metres of face that stand or fall together
+
+
+@dataclass(frozen=True, eq=False)
+class FaceBins:
+    """Pieces of face, at most BIN long: middles and normals (b, 2), length (b,), support (b,) distinct views."""
+
+    middles: Floats
+    normals: Floats
+    length: Floats
+    support: Ints
+
+    def where(self, chosen: NDArray[np.bool_]) -> "FaceBins":
+        """The bins for which `chosen` (b,) holds."""
+        return FaceBins(self.middles[chosen], self.normals[chosen], self.length[chosen], self.support[chosen])
+
+
+def supported_bins(samples: Samples, faces: WallFaces) -> FaceBins:
+    """The pieces of face that two views or more measured."""
+    known = faces.label >= 0
+    face, view = faces.label[known], samples.view[known]
+    normal = faces.normals[face]
+    arm = samples.points[known] - faces.centres[face]
+    along = arm[:, 0] * normal[:, 1] - arm[:, 1] * normal[:, 0]
+    piece = np.floor(along / BIN).astype(np.int64)
+    _, kept, group = np.unique(piece * len(faces.centres) + face, return_index=True, return_inverse=True)
+    low, high = np.full(len(kept), np.inf), np.full(len(kept), -np.inf)
+    np.minimum.at(low, group, along)
+    np.maximum.at(high, group, along)
+    normals = normal[kept]
+    middles = faces.centres[face[kept]] + 0.5 * (low + high)[:, None] * _along(normals)
+    bins = FaceBins(middles, normals, high - low, distinct_views(group, view, len(kept)))
+    return bins.where(bins.support >= 2)
+
+
+def open_bins(bins: FaceBins, mask: NDArray[np.bool_], counts: Counts) -> NDArray[np.bool_]:
+    """Bins (b,) whose ground behind is free, close by and as far as a wall is thick at least."""
+    behind = [bins.middles - depth * bins.normals for depth in (1.2 * counts.cell, 2.4 * counts.cell)]
+    cells = [np.floor(points / counts.cell).astype(np.int64) - counts.corner for points in behind]
+    return np.asarray(np.all([mask[cell[:, 1], cell[:, 0]] for cell in cells], axis=0))
+
+
+def standing(bins: FaceBins, sight: Sight, depth: float) -> NDArray[np.bool_]:
+    """Bins (b,) that more views measured than saw through, from the front, to `depth` metres behind them."""
+    point, view = sight.pairs(bins.middles - depth * bins.normals)
+    ahead = np.sum((sight.origins[view] - bins.middles[point]) * bins.normals[point], axis=1) > 0
+    through = np.bincount(point[ahead], minlength=len(bins.support))
+    return np.asarray(bins.support > through)
+
+
+def closed(mask: NDArray[np.bool_], bins: FaceBins, counts: Counts, depth: float) -> NDArray[np.bool_]:
+    """The mask of free cells without the strips, `depth` metres thick, behind the bins."""
+    across = np.arange(0.25 * counts.cell, depth, 0.5 * counts.cell)
+    beside = np.linspace(-0.5, 0.5, 1 + int(np.ceil(2 * BIN / counts.cell))) * bins.length[:, None]
+    strip = bins.middles[:, None] + beside[:, :, None] * _along(bins.normals)[:, None]
+    strip = strip[:, :, None] - across[:, None] * bins.normals[:, None, None]
+    column, row = (np.floor(strip.reshape(-1, 2) / counts.cell).astype(np.int64) - counts.corner).T
+    repaired = mask.copy()
+    repaired[row, column] = False
+    return repaired
+
+
+def _along(normals: Floats) -> Floats:
+    return np.stack([normals[:, 1], -normals[:, 0]], axis=1)
+
+
+def leaks(free: MultiPolygon, bins: FaceBins, tolerance: float) -> Floats:
+    """Middles (l, 2) of the bins that lie more than `tolerance` metres inside the free space."""
+    shapely.prepare(free)
+    inside = bins.middles[shapely.contains_xy(free, bins.middles)]
+    away = np.array([free.boundary.distance(shapely.Point(middle)) for middle in inside])
+    return np.asarray(inside[away > tolerance]).reshape(-1, 2)

@@ -1,0 +1,135 @@
+"""Reading the map: from votes and fused faces back to polygons, with their provenance and what follows from it."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from scipy import ndimage
+from shapely import MultiPolygon
+
+from backend.contours import as_polygons, assemble, contours
+from backend.decisions import decisions_of
+from backend.doors import DoorSettings, Opening, doors_of
+from backend.evidence import Counts
+from backend.hidden_objects import ObjectSettings, objects_in, without_slivers
+from backend.leak_repair import closed, leaks, open_bins, standing, supported_bins
+from backend.provenance import boundary_edges, label_edges
+from backend.room_map import Decision, MapEdge, Obstacle, RoomMap, Verdict
+from backend.samples import Samples
+from backend.sight import Sight, sight_of
+from backend.snapping import snap_ring
+from backend.wall_faces import WallFaces
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ReadingSettings:
+    """Opinions about turning votes into a map, in metres."""
+
+    opening: float = 0.05  # larger removes wider slits and spikes of free space
+    inset: float = 0.05  # larger keeps plans farther from surfaces
+    reach: float = 0.06  # larger lets samples farther off support an edge, and faces farther off attract it
+    panel: float = 0.05  # larger makes repaired panels thicker
+    deep: float = 0.10  # larger calls a piece of boundary overruled only farther inside the free space
+    least_area: float = 0.25  # m²; larger forgets bigger patches of free space where no sensor stood
+    objects: ObjectSettings = field(default_factory=ObjectSettings)
+    doors: DoorSettings = field(default_factory=DoorSettings)
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedViews:
+    """Views as they voted, in rising order of index.
+
+    index: (v,). rings: each (m, 2), counter-clockwise; reals: each (m,), edge i to i + 1 was measured.
+    origins: (v, 2). openings: each (d, 2, 2) jambs the infrared reported.
+    """
+
+    index: NDArray[np.int64]
+    rings: list[Floats]
+    reals: list[NDArray[np.bool_]]
+    origins: Floats
+    openings: list[Floats]
+
+
+def read_map(
+    views: PlacedViews, samples: Samples, faces: WallFaces, counts: Counts, settings: ReadingSettings
+) -> RoomMap:
+    """The room map that the votes, the faces and the placed samples (rows of views) tell."""
+    sight = sight_of(views.rings, views.origins)
+    bins = supported_bins(samples, faces)
+    mask = counts.free > counts.wall
+    bins = bins.where(standing(bins, sight, settings.panel))
+    mask = closed(mask, bins.where(open_bins(bins, mask, counts)), counts, settings.panel)
+    free = _polygons(mask, faces, counts, settings)
+    free = _known_ground(free, views.origins, settings.least_area)
+    free = without_slivers(free, samples.points, settings.reach, settings.objects)
+    edges = label_edges(boundary_edges(free), samples, counts, settings.reach)
+    objects = objects_in(free, edges, settings.objects)
+    walls = as_polygons(shapely.union_all([free, *(thing.outline for thing in objects)]))
+    doors = doors_of(walls, _reported(views), sight, settings.doors)
+    safety = as_polygons(free.buffer(-settings.inset, join_style="mitre"))
+    decided = _decisions(views, (mask, counts), sight, edges, settings)
+    inferred = tuple(_inferred(thing, sight) for thing in objects if thing.inferred)
+    room_map = RoomMap(free, safety, edges, doors, objects, leaks(free, bins, settings.panel), decided + inferred)
+    return _by_index(room_map, views.index)
+
+
+def _polygons(mask: NDArray[np.bool_], faces: WallFaces, counts: Counts, settings: ReadingSettings) -> MultiPolygon:
+    """Free cells, opened, as polygons on the fused faces."""
+    radius = round(settings.opening / counts.cell)
+    y, x = np.mgrid[-radius : radius + 1, -radius : radius + 1]
+    opened = ndimage.binary_opening(mask, x**2 + y**2 <= radius**2 + 0.5)
+    traced = [(ring + counts.corner) * counts.cell for ring in contours(opened)]
+    rings = [snap_ring(ring, faces, settings.reach) for ring in traced]
+    return as_polygons(shapely.simplify(assemble(rings), 0.75 * counts.cell))
+
+
+def _known_ground(free: MultiPolygon, origins: Floats, least_area: float) -> MultiPolygon:
+    """The parts where a sensor stood, and others only if they are large."""
+    stood = shapely.MultiPoint(origins)
+    return MultiPolygon([part for part in free.geoms if part.area >= least_area or part.intersects(stood)])
+
+
+def _reported(views: PlacedViews) -> Opening:
+    """The openings the views reported, each of weight one."""
+    jambs = np.concatenate([np.empty((0, 2, 2)), *views.openings])
+    view = np.repeat(np.arange(len(views.openings)), [len(opening) for opening in views.openings])
+    return Opening(jambs, np.ones(len(jambs)), view)
+
+
+def _decisions(
+    views: PlacedViews,
+    votes: tuple[NDArray[np.bool_], Counts],
+    sight: Sight,
+    edges: tuple[MapEdge, ...],
+    settings: ReadingSettings,
+) -> tuple[Decision, ...]:
+    mask, counts = votes
+    inner = ndimage.minimum_filter(mask.view(np.uint8), 2 * round(settings.deep / counts.cell) + 1) > 0
+    deep = []
+    for ring in views.rings:
+        cell = np.floor(0.5 * (ring + np.roll(ring, -1, axis=0)) / counts.cell).astype(np.int64) - counts.corner
+        deep.append(inner[cell[:, 1], cell[:, 0]])
+    return decisions_of(views.rings, views.reals, deep, sight, edges)
+
+
+def _inferred(thing: Obstacle, sight: Sight) -> Decision:
+    """The decision to infer an object: by the views that see the ground around it."""
+    outline = np.asarray(thing.outline.buffer(0.1).exterior.coords)
+    _, seers = sight.pairs(outline)
+    return Decision(
+        Verdict.INFERRED, np.asarray(thing.outline.exterior.coords), np.empty(0, dtype=np.int64), np.unique(seers)
+    )
+
+
+def _by_index(room_map: RoomMap, index: NDArray[np.int64]) -> RoomMap:
+    """The map with the rows of views replaced by their indices."""
+    return replace(
+        room_map,
+        edges=tuple(replace(edge, views=index[edge.views]) for edge in room_map.edges),
+        doors=tuple(replace(door, views=index[door.views]) for door in room_map.doors),
+        obstacles=tuple(replace(thing, views=index[thing.views]) for thing in room_map.obstacles),
+        decisions=tuple(replace(d, owners=index[d.owners], deciders=index[d.deciders]) for d in room_map.decisions),
+    )
