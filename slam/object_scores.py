@@ -1,0 +1,93 @@
+"""Which doors and obstacles of the truth the map names, and how well."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from backend.room_map import Door, Obstacle
+
+Floats = NDArray[np.float64]
+JAMB = 0.15  # metres both jambs may be off
+OVERLAP = 0.25  # intersection over union that makes two outlines the same object
+
+
+@dataclass(frozen=True)
+class DoorScores:
+    """Doors with both jambs within 15 cm; mean errors of these in metres, nan without any."""
+
+    precision: float
+    recall: float
+    jamb_error: float
+    width_error: float
+
+
+@dataclass(frozen=True)
+class ObstacleScores:
+    """Obstacles that overlap a true one by a quarter; nan where there was nothing to find or nothing claimed.
+
+    inferred_recall: of the true ones that no measured obstacle explains.
+    """
+
+    measured_precision: float
+    measured_recall: float
+    inferred_precision: float
+    inferred_recall: float
+    recall: float
+
+
+def door_scores(doors: tuple[Door, ...], true_jambs: Floats) -> DoorScores:
+    """Doors of the map against true jambs (d, 2, 2), paired one to one."""
+    jambs = np.array([door.jambs for door in doors]).reshape(-1, 2, 2)
+    straight = np.linalg.norm(jambs[:, None] - true_jambs[None], axis=3)
+    crossed = np.linalg.norm(jambs[:, None, ::-1] - true_jambs[None], axis=3)
+    errors = np.where((crossed.max(axis=2) < straight.max(axis=2))[..., None], crossed, straight)
+    worst = errors.max(axis=2)
+    mine, theirs = linear_sum_assignment(np.minimum(worst, 10 * JAMB))
+    right = worst[mine, theirs] <= JAMB
+    mine, theirs = mine[right], theirs[right]
+    widths = np.linalg.norm(jambs[mine, 1] - jambs[mine, 0], axis=1)
+    true_widths = np.linalg.norm(true_jambs[theirs, 1] - true_jambs[theirs, 0], axis=1)
+    return DoorScores(
+        precision=_share(len(mine), len(jambs)),
+        recall=_share(len(mine), len(true_jambs)),
+        jamb_error=_mean(errors[mine, theirs]),
+        width_error=_mean(np.abs(widths - true_widths)),
+    )
+
+
+def obstacle_scores(
+    obstacles: tuple[Obstacle, ...], true_obstacles: tuple[Polygon, ...], seen: BaseGeometry
+) -> ObstacleScores:
+    """Obstacles of the map against those true ones that stand free, apart from the walls, by seen ground."""
+    islands = [Polygon(ring) for part in shapely.get_parts(seen) for ring in part.interiors]
+    standing = [thing for thing in true_obstacles if any(thing.within(hole.buffer(1e-3)) for hole in islands)]
+    measured = [thing.outline for thing in obstacles if not thing.inferred]
+    inferred = [thing.outline for thing in obstacles if thing.inferred]
+    by_measured, by_inferred = _matches(measured, standing), _matches(inferred, standing)
+    left = ~by_measured.any(axis=0)
+    return ObstacleScores(
+        measured_precision=_share(int(_matches(measured, list(true_obstacles)).any(axis=1).sum()), len(measured)),
+        measured_recall=_share(int(by_measured.any(axis=0).sum()), len(standing)),
+        inferred_precision=_share(int(_matches(inferred, list(true_obstacles)).any(axis=1).sum()), len(inferred)),
+        inferred_recall=_share(int((by_inferred.any(axis=0) & left).sum()), int(left.sum())),
+        recall=_share(int((by_measured.any(axis=0) | by_inferred.any(axis=0)).sum()), len(standing)),
+    )
+
+
+def _matches(outlines: list[Polygon], true: list[Polygon]) -> NDArray[np.bool_]:
+    """Which outlines (m,) overlap which true ones (t,) by a quarter of their union."""
+    overlaps = [[one.intersection(other).area / one.union(other).area for other in true] for one in outlines]
+    return np.array(overlaps).reshape(len(outlines), len(true)) >= OVERLAP
+
+
+def _share(part: int, whole: int) -> float:
+    return part / whole if whole else float("nan")
+
+
+def _mean(values: Floats) -> float:
+    return float(values.mean()) if values.size else float("nan")
