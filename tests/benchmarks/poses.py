@@ -1,0 +1,204 @@
+"""Poses: how right and how fast drives through real buildings become trajectories.
+
+The recordings lie in the folder that ROOMSKETCH_DATA names. Figures of other systems were measured elsewhere, with the
+same relations; they are read from a file beside the recordings.
+"""
+
+import gzip
+import json
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from time import process_time
+from typing import Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from backend.estimate import Estimate
+from frontend.local_map import Faces
+from frontend.rigid_motion import transform
+from frontend.scan import Floats, Scan
+from slam.mapper import Mapper
+from slam.recordings import open_recording
+from slam.settings import Settings
+from slam.trajectory_scores import (
+    Spread,
+    Track,
+    absolute_errors,
+    align,
+    nearest_in_time,
+    read_relations,
+    relation_errors,
+)
+
+LOGS = {"intel": "sparse", "intel_dense": "dense"}  # and what the file of the peers calls them
+ELSEWHERE = "peers: given figures, measured elsewhere on another machine with the same log and relations"
+APART = 60.0  # seconds between two visits of one wall
+NEAR = 0.3  # metres between faces of two visits that are taken for one wall
+WARM_UP = 120  # scans: enough to compile every loop and to load what closes loops
+
+Row = dict[str, Any]
+
+
+class BenchmarkError(Exception):
+    """A benchmark that cannot be run; the message says what is missing."""
+
+
+def rows() -> list[Row]:
+    """One row per figure. Raises BenchmarkError without the folder of real recordings."""
+    named = os.environ.get("ROOMSKETCH_DATA")
+    if named is None:
+        raise BenchmarkError("ROOMSKETCH_DATA names no folder of real recordings")
+    folder = Path(named)
+    mapped(open_recording(folder / "intel" / "intel.log.gz").scans[:WARM_UP])
+    found: list[Row] = []
+    for log in LOGS:
+        found += relation_rows(folder, log)
+    return found + camera_rows(folder / "lego_arena") + closure_rows(folder / "aces" / "aces.log.gz")
+
+
+def relation_rows(folder: Path, log: str) -> list[Row]:
+    """Errors over the relations, the time from log to poses, and where it goes."""
+    path = folder / "intel" / f"{log}.log.gz"
+    clock = process_time()
+    scans = open_recording(path).scans
+    mapper, estimate = mapped(scans)
+    seconds = process_time() - clock
+    relations = read_relations(folder / "intel" / f"{log}.relations")
+    metres, radians = relation_errors(track_of(path, scans, estimate.poses), relations)
+    spread, peers = Spread.of(metres), given_peers(folder, log)
+    note = f"{spread.count} relations, {len(scans)} scans; {ELSEWHERE}"
+    errors = [
+        row(f"{log}: {name} translation error", value, "m", peers[key], note)
+        for name, key, value in (
+            ("mean", "mean", spread.mean),
+            ("median", "median", spread.median),
+            ("standard deviation of", "std", spread.std),
+        )
+    ]
+    turns = Spread.of(np.degrees(radians))
+    stages = [
+        row(f"{log}: {stage}", value, "s", {}, "wall clock, part of the way from log to poses")
+        for stage, value in mapper.timings.items()
+    ]
+    return [
+        *errors,
+        row(f"{log}: mean rotation error", turns.mean, "°", {}, f"{turns.count} relations"),
+        row(
+            f"{log}: from log to poses",
+            seconds,
+            "s CPU",
+            peers["cpu_s"],
+            f"without imports and compilation; {ELSEWHERE}",
+        ),
+        *stages,
+    ]
+
+
+def camera_rows(folder: Path) -> list[Row]:
+    """Absolute error against a camera that watched the robot from above, as it is and with the camera's scale undone.
+
+    What stands nearer to the camera than the floor looks larger: cylinders and robot, though not the walls.
+    """
+    scans = open_recording(folder).scans
+    _, estimate = mapped(scans)
+    reference = np.array([line.split()[1:4] for line in (folder / "robot4_reference.txt").open()], float) / 1000
+    pairs = nearest_in_time(np.array([scan.time for scan in scans]), reference[:, 0], 0.1)
+    true = reference[pairs[1], 1:]
+    ours, wheels = (poses[pairs[0], :2] for poses in (estimate.poses, odometry_of(scans)))
+    note = f"{len(true)} camera positions within 0.1 s of a scan"
+    found = []
+    for name, scaled in (
+        ("rigid alignment", lambda places: places),
+        ("and scale", lambda places: scaled_to(places, true)),
+    ):
+        rmse, by_wheels = (Spread.of(absolute_errors(scaled(places), true)).rmse for places in (ours, wheels))
+        found.append(row(f"lego_arena: RMSE against the camera, {name}", rmse, "m", {"wheels alone": by_wheels}, note))
+    return found
+
+
+def scaled_to(estimated: Floats, true: Floats) -> Floats:
+    """Positions (n, 2) stretched about the origin to the scale that fits the true ones best (Umeyama 1991)."""
+    turned = transform(estimated - estimated.mean(axis=0), np.array([0.0, 0.0, align(estimated, true)[2]]))
+    scale = np.sum(turned * (true - true.mean(axis=0))) / np.sum(turned**2)
+    return np.asarray(scale * estimated)
+
+
+def closure_rows(path: Path) -> list[Row]:
+    """How well corridors close that were driven more than once: no truth is needed for that."""
+    scans = open_recording(path).scans
+    mapper, estimate = mapped(scans)
+    closed = sum(decision.what == "loop" and decision.accepted for decision in estimate.decisions)
+    gaps = wall_gaps(mapper, estimate)
+    note = (
+        f"{len(gaps)} faces seen again after {APART:.0f} s or more, distance across to the other visit's nearest face"
+    )
+    return [
+        row("aces: accepted loops", closed, "", {}, f"of {len(estimate.keyframes)} keyframes") | {"better": "higher"},
+        row("aces: mean gap between visits of a wall", float(np.mean(gaps)), "m", {}, note),
+        row("aces: 95 % of the gaps are under", float(np.percentile(gaps, 95)), "m", {}, note),
+    ]
+
+
+def wall_gaps(mapper: Mapper, estimate: Estimate) -> Floats:
+    """Distances (g,) across walls between faces of visits at least APART seconds apart, looking the same way."""
+    when = np.array([mapper.percepts[scan].scan.time for scan in estimate.keyframes])
+    parts = [Faces.placed(mapper.percepts[scan].surface, estimate.poses[scan]) for scan in estimate.keyframes]
+    gaps = []
+    for seen, time in zip(parts, when, strict=True):
+        earlier = [part for part, then in zip(parts, when, strict=True) if then < time - APART]
+        if earlier:
+            gaps.append(gaps_to(seen, Faces.together(earlier)))
+    return np.concatenate(gaps)
+
+
+def gaps_to(seen: Faces, earlier: Faces) -> Floats:
+    """Distances (g,) across from each face to the nearest earlier one that looks the same way, where one is near."""
+    # A unit of normal counts as a metre, so a face that is turned by 17° or more is too far off to be a partner.
+    tree = cKDTree(np.hstack([earlier.points, earlier.normals]))
+    partners = np.asarray(tree.query(np.hstack([seen.points, seen.normals]), distance_upper_bound=NEAR)[1])
+    found = partners < len(earlier.points)
+    offsets = seen.points[found] - earlier.points[partners[found]]
+    return np.asarray(np.abs(np.sum(offsets * earlier.normals[partners[found]], axis=1)))
+
+
+def mapped(scans: Sequence[Scan]) -> tuple[Mapper, Estimate]:
+    """The mapper after all scans, and its estimate."""
+    settings = Settings()
+    mapper = Mapper(settings.frontend, settings.poses)
+    for scan in scans:
+        mapper.add(scan)
+    return mapper, mapper.result()
+
+
+def track_of(path: Path, scans: Sequence[Scan], poses: Floats) -> Track:
+    """Poses of the scans, joined by every odometry line of a CARMEN log."""
+    with gzip.open(path, "rt") as lines:
+        wheels = np.array([words[1:4] + words[-3:-2] for words in map(str.split, lines) if words[0] == "ODOM"], float)
+    return Track(np.array([scan.time for scan in scans]), poses, wheels[:, 3], wheels[:, :3])
+
+
+def odometry_of(scans: Sequence[Scan]) -> Floats:
+    """Raw odometry (n, 3) of the scans."""
+    return np.array([scan.odometry for scan in scans])
+
+
+def given_peers(folder: Path, log: str) -> dict[str, dict[str, float]]:
+    """Figures of other systems by figure and name, as they stand in the file beside the recordings."""
+    path = folder.parent / "benchmarks" / "peers_intel.json"
+    if not path.exists():
+        raise BenchmarkError(f"{path} is missing: the figures of other systems stand in it")
+    systems = json.loads(path.read_text())[LOGS[log]]["systems"]
+    return {
+        key: {name: figures[key] for name, figures in systems.items()} for key in ("mean", "median", "std", "cpu_s")
+    }
+
+
+def row(name: str, value: float, unit: str, peers: dict[str, float], note: str) -> Row:
+    """A figure where less is better; the target is the best of the peers, where there are any."""
+    target = min(peers.values(), default=None)
+    return {
+        "part": "poses", "name": name, "value": value, "unit": unit, "better": "lower",
+        "target": target, "peers": peers, "runs": 1, "note": note,
+    }  # fmt: skip
