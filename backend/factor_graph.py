@@ -28,12 +28,15 @@ class GraphSettings:
 
 
 class FactorGraph:
-    """Grows by factors; `solve` moves all estimates to the optimum of everything said so far."""
+    """Grows by factors; `mend` moves the estimates that are touched by the newest ones, `solve` all of them."""
 
     def __init__(self, settings: GraphSettings) -> None:
         self.settings = settings
         self._graph = gtsam.NonlinearFactorGraph()
         self._values = gtsam.Values()
+        self._tree = gtsam.ISAM2(_tree_parameters())
+        self._taken = 0  # factors the tree already holds
+        self._fresh = gtsam.Values()  # values it does not
         self._loops: list[tuple[int, int, gtsam.Pose2, Floats]] = []
         self._poses: list[int] = []
         self.landmark_indices: list[int] = []
@@ -50,7 +53,7 @@ class FactorGraph:
 
     def add_pose(self, index: int, pose: Floats) -> None:
         """A new pose at its first guess (3,)."""
-        self._values.insert(X(index), gtsam.Pose2(*pose))
+        self._insert(X(index), gtsam.Pose2(*pose))
         self._poses.append(index)
 
     def anchor(self, index: int, pose: Floats, covariance: Floats) -> None:
@@ -71,7 +74,7 @@ class FactorGraph:
 
     def add_landmark(self, index: int, position: Floats) -> None:
         """A new landmark at its first guess (2,)."""
-        self._values.insert(L(index), np.asarray(position, float))
+        self._insert(L(index), np.asarray(position, float))
         self.landmark_indices.append(index)
 
     def add_sighting(self, pose: int, landmark: int, position: Floats, covariance: Floats) -> None:
@@ -88,6 +91,16 @@ class FactorGraph:
         noise = gtsam.noiseModel.Robust.Create(huber, _noise(turned @ covariance @ turned.T))
         bearing = gtsam.Rot2(float(np.arctan2(position[1], position[0])))
         self._graph.add(gtsam.BearingRangeFactor2D(X(pose), L(landmark), bearing, distance, noise))
+
+    def mend(self) -> None:
+        """Let the incremental solver (ISAM2) take in what is new."""
+        graph = gtsam.NonlinearFactorGraph()
+        for k in range(self._taken, self._graph.size()):
+            graph.add(self._graph.at(k))
+        self._taken = self._graph.size()
+        self._tree.update(graph, self._fresh)
+        self._fresh = gtsam.Values()
+        self._values = self._tree.calculateEstimate()
 
     def solve(self) -> None:
         """Levenberg–Marquardt from the current estimates; loops keep their robust kernel."""
@@ -111,6 +124,10 @@ class FactorGraph:
         marginals = gtsam.Marginals(self._graph, self._values)
         return np.array([marginals.marginalCovariance(X(i)) for i in self._poses]).reshape(-1, 3, 3)
 
+    def _insert(self, key: int, value: gtsam.Pose2 | Floats) -> None:
+        self._values.insert(key, value)
+        self._fresh.insert(key, value)
+
     def _add_between(self, fixed: int, moving: int, pose: Floats, noise: gtsam.noiseModel.Base) -> None:
         self._check_pose(fixed)
         self._check_pose(moving)
@@ -119,6 +136,13 @@ class FactorGraph:
     def _check_pose(self, index: int) -> None:
         if not self._values.exists(X(index)):
             raise GraphError(f"a factor names pose {index}, but the graph holds {len(self._poses)} poses")
+
+
+def _tree_parameters() -> gtsam.ISAM2Params:
+    parameters = gtsam.ISAM2Params()
+    parameters.setRelinearizeThreshold(0.02)
+    parameters.relinearizeSkip = 1
+    return parameters
 
 
 def _noise(covariance: Floats) -> gtsam.noiseModel.Base:

@@ -82,13 +82,13 @@ class Mapper:
         surprise = self._close_loops()
         clock = self._tick("loops", clock)
         if surprise:
-            self.mend()
+            self._graph.mend()
+            self._settle()
         self._tick("graph", clock)
         return self._keyframes[-1].pose
 
-    def mend(self) -> None:
-        """Solve the graph and move keyframes and landmarks to where it puts them."""
-        self._graph.solve()
+    def _settle(self) -> None:
+        """Move keyframes and landmarks to where the graph now puts them."""
         for keyframe, pose in zip(self._keyframes, self._graph.poses, strict=True):
             keyframe.pose, keyframe.faces = pose, Faces.placed(keyframe.percept.surface, pose)
         self._landmarks.positions[self._graph.landmark_indices] = self._graph.landmarks
@@ -98,7 +98,8 @@ class Mapper:
         """The estimate after all scans so far."""
         clock = perf_counter()
         if self._unsolved:
-            self.mend()
+            self._graph.solve()
+            self._settle()
         covariances = self._graph.covariances()
         self._tick("graph", clock)
         scale, turn_scale, turn_per_metre, forward, left = self._odometry.calibration
