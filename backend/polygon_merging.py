@@ -85,6 +85,11 @@ class Merger:
         self._vote_again(poses, faces)
         return read_map(self._placed_views(poses), samples, faces, self._evidence.counts(), self.settings.reading)
 
+    @property
+    def evidence_bytes(self) -> int:
+        """Memory the votes take."""
+        return self._evidence.bytes
+
     def _placed_views(self, poses: Floats) -> PlacedViews:
         """The views as they voted."""
         everyone = self._in_order()

@@ -176,15 +176,18 @@ def view_from_ranges(bearings: Floats, ranges: Floats, rays: Rays) -> View:
 
 
 def seen_from(plan: Plan, poses: Floats, max_range: float) -> Polygon:
-    """The part of the plan's free space that noise-free, very dense rays from the true poses reach."""
+    """The part of the plan's free space in sight of the true poses: rays just beside every corner, and some between."""
     segments = segments_of(plan.free)
-    bearings = np.linspace(-np.pi, np.pi, 2160, endpoint=False)
+    between = np.linspace(-np.pi, np.pi, 120, endpoint=False)
     seen = []
     for pose in poses:
-        ranges = np.minimum(cast(segments, pose, bearings), max_range)
+        corner = segments[:, 0] - pose[:2]
+        angles = np.arctan2(corner[:, 1], corner[:, 0])
+        bearings = np.unique(np.concatenate([angles - 1e-5, angles + 1e-5, between]))
+        ranges = np.minimum(cast(segments, np.array([*pose[:2], 0.0]), bearings), max_range)
         ring = ranges[:, None] * np.stack([np.cos(bearings), np.sin(bearings)], axis=1)
-        seen.append(shapely.make_valid(Polygon(place(ring, pose))))
-    whole = shapely.make_valid(shapely.union_all(seen, grid_size=1e-4)).intersection(plan.free)
+        seen.append(shapely.make_valid(Polygon(ring + pose[:2])).simplify(1e-4))
+    whole = shapely.make_valid(shapely.union_all(seen)).intersection(plan.free)
     return max(as_polygons(whole).geoms, key=lambda part: part.area)
 
 

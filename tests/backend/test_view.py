@@ -1,0 +1,29 @@
+"""Claims about views and placing them."""
+
+import numpy as np
+import pytest
+
+from backend.view import EdgeKind, View, ViewError, place
+
+SQUARE = np.array([[1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]])
+
+
+def square_view(edges: int = 4, spreads: int = 4) -> View:
+    kinds = np.full(edges, EdgeKind.REAL, dtype=np.uint8)
+    return View(SQUARE, kinds, np.full(spreads, 0.02), np.zeros(2), np.empty((0, 2, 2)))
+
+
+def test_a_view_encloses_its_free_space() -> None:
+    assert square_view().free_space.area == pytest.approx(4)
+
+
+def test_arrays_that_do_not_fit_are_refused_with_numbers() -> None:
+    with pytest.raises(ViewError, match="4 corners, but 3 edges"):
+        square_view(edges=3)
+    with pytest.raises(ViewError, match="4 corners, but 4 edges and 5 spreads"):
+        square_view(spreads=5)
+
+
+def test_placing_turns_first_and_then_shifts() -> None:
+    placed = place(np.array([[1.0, 0.0]]), np.array([2.0, 3.0, np.pi / 2]))
+    np.testing.assert_allclose(placed, [[2.0, 4.0]], atol=1e-12)
