@@ -67,6 +67,8 @@ class FactorGraph:
 
     def add_loop(self, fixed: int, moving: int, pose: Floats, covariance: Floats) -> None:
         """As `add_motion`, but it may be wrong: it loses its weight when the rest of the graph contradicts it."""
+        self._check_pose(fixed)
+        self._check_pose(moving)
         cauchy = gtsam.noiseModel.mEstimator.Cauchy.Create(self.settings.loop_width)
         information = np.asarray(np.linalg.inv(covariance), np.float64)
         self._loops.append((fixed, moving, gtsam.Pose2(*pose), information))

@@ -41,17 +41,18 @@ class Drift:
     """The doubt between poses of the graph, as motions and loops are added."""
 
     def __init__(self) -> None:
-        self._ends: list[tuple[int, int]] = []
-        self._variances: list[tuple[float, float]] = []
+        self._ties: dict[tuple[int, int], tuple[float, float]] = {}
 
     def add(self, fixed: int, moving: int, covariance: Floats) -> None:
         """Two poses are tied with this covariance (3, 3)."""
-        self._ends.append((fixed, moving))
-        self._variances.append((float(np.trace(covariance[:2, :2])), float(covariance[2, 2])))
+        variances = (float(np.trace(covariance[:2, :2])), float(covariance[2, 2]))
+        tied = self._ties.get((fixed, moving), variances)
+        self._ties[fixed, moving] = (min(tied[0], variances[0]), min(tied[1], variances[1]))
 
     def seen_from(self, newest: int, positions: Floats) -> tuple[Floats, Floats]:
         """Standard deviations (n,) of place in metres and of heading in radians of every pose against the newest."""
-        ends, variances = np.array(self._ends).reshape(-1, 2), np.array(self._variances).reshape(-1, 2)
+        ends = np.array(list(self._ties)).reshape(-1, 2)
+        variances = np.array(list(self._ties.values())).reshape(-1, 2)
         lever = np.sum((positions[ends[:, 1]] - positions[newest]) ** 2, axis=1)
         count = len(positions)
         cost = variances[:, 0] + variances[:, 1] * lever

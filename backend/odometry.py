@@ -79,16 +79,17 @@ class Odometry:
         """The corrected move (3,) of the registered point and its derivative (3, 5) with respect to the constants."""
         scale, turn_scale, bias, *mount = self.calibration
         way = float(np.hypot(wheels[0], wheels[1]))
-        # The unnoticed turn happens along the way: the chord turns by half of it.
-        chord = _rotation(bias * way / 2) @ wheels[:2]
         turn = turn_scale * wheels[2] + bias * way
+        # The turn that the wheels did not notice happens along the way: the chord swings by half of it.
+        chord = _rotation((turn - wheels[2]) / 2) @ wheels[:2]
+        aside = scale / 2 * np.array([-chord[1], chord[0]])
         lever = _rotation(turn) - np.eye(2)
         pose = np.array([*(scale * chord + lever @ mount), turn])
         swept = np.array([[0.0, -1.0], [1.0, 0.0]]) @ _rotation(turn) @ mount
         jacobian = np.zeros((3, 5))
         jacobian[:2, 0] = chord
-        jacobian[:2, 1] = swept * wheels[2]
-        jacobian[:2, 2] = scale * way / 2 * np.array([-chord[1], chord[0]]) + swept * way
+        jacobian[:2, 1] = (aside + swept) * wheels[2]
+        jacobian[:2, 2] = (aside + swept) * way
         jacobian[:2, 3:] = lever
         jacobian[2, 1:3] = wheels[2], way
         return pose, jacobian

@@ -53,7 +53,7 @@ class ScoreGrid:
         reach = float(np.linalg.norm(points, axis=1).max())
         step = self.cell / max(reach, 1.0)
         turns = guess[2] + step * np.arange(-np.ceil(window[1] / step), np.ceil(window[1] / step) + 1)
-        span = int(np.ceil(window[0] / self.cell))
+        span = int(np.ceil(window[0] / self.cell - 1e-6))
         cells = np.empty((len(turns), len(points), 2), np.int64)
         for k, turn in enumerate(turns):
             placed = points @ rotation(turn).T + guess[:2]
@@ -150,7 +150,8 @@ def _best(pyramid: Pyramid, cells: Integers, span: int, least: float) -> tuple[n
             for c in range(4):
                 children[c] = _bound(pyramid[h - 1], cells[k], u + d * (c // 2), v + d * (c % 2), pad)
             for c in np.argsort(children):
-                if children[c] > best:
+                inside = u + d * (c // 2) <= span and v + d * (c % 2) <= span
+                if inside and children[c] > best:
                     stack[top] = h - 1, k, u + d * (c // 2), v + d * (c % 2)
                     limits[top] = children[c]
                     top += 1

@@ -43,6 +43,8 @@ def close_loop(
 
     recent: faces of the last keyframes, which vote together in a wide search. window: metres and radians.
     """
+    if len(percept.surface.points) == 0:
+        return "the scan has no surface to lay on the old map"
     start: Floats | None = pose
     if window[0] > settings.close:
         start = _searched(recent, pose, old, window, settings)

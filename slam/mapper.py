@@ -60,6 +60,7 @@ class Mapper:
         self._relative: list[tuple[int, Floats]] = []  # keyframe and pose in its frame, one per scan
         self._decisions: list[Decision] = []
         self._unsolved = False
+        self._slipped = False  # whether the wheels disagreed since the last keyframe
 
     def add(self, scan: Scan) -> Floats:
         """Take in the next scan; its pose (3,) in the frame of the first, as now believed."""
@@ -104,8 +105,8 @@ class Mapper:
         self._tick("graph", clock)
         scale, turn_scale, turn_per_metre, forward, left = self._odometry.calibration
         return Estimate(
-            poses=np.array([compose(self._keyframes[k].pose, step) for k, step in self._relative]),
-            covariances=covariances[[k for k, _ in self._relative]],
+            poses=np.array([compose(self._keyframes[k].pose, step) for k, step in self._relative]).reshape(-1, 3),
+            covariances=covariances[np.array([k for k, _ in self._relative], np.int64)],
             landmarks=self._graph.landmarks,
             sightings=self._landmarks.counts[self._graph.landmark_indices],
             keyframes=np.array([keyframe.scan for keyframe in self._keyframes]),
@@ -146,6 +147,7 @@ class Mapper:
                 f"{np.hypot(*moved[:2]):.2f} m and {np.degrees(moved[2]):.1f}°: {np.sqrt(distance):.1f} sigmas"
             )
             self._decisions.append(Decision("odometry", (index - 1, index), accepted=False, reason=reason))
+            self._slipped = True
         return placed
 
     def _add_keyframe(self, percept: Percept, placed: Placed, step: Floats) -> None:
@@ -153,9 +155,11 @@ class Mapper:
         self._graph.add_pose(new, placed.pose)
         if placed.refused is None:
             self._graph.add_motion(new - 1, new, step, placed.covariance)
-        wheels = between(old.percept.scan.odometry, percept.scan.odometry)
-        driven = self._odometry.predict(wheels)
-        self._graph.add_motion(new - 1, new, driven.pose, turned(driven.covariance, -driven.pose[2]))
+        if placed.refused is not None or not self._slipped:
+            wheels = between(old.percept.scan.odometry, percept.scan.odometry)
+            driven = self._odometry.predict(wheels)
+            self._graph.add_motion(new - 1, new, driven.pose, turned(driven.covariance, -driven.pose[2]))
+        self._slipped = False
         self._drift.add(new - 1, new, placed.covariance)
         faces = Faces.placed(percept.surface, placed.pose)
         self._keyframes.append(_Keyframe(len(self.percepts) - 1, percept, placed.pose, faces))

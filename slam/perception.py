@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from backend.landmark_map import Knots
 from backend.view import View
 from frontend.contour import Contour, ContourSettings, trace
@@ -38,10 +40,11 @@ class Percept:
     def knots(self) -> Knots:
         """The landmark knots of the sketch."""
         kept = self.sketch.landmark
+        both_sides = np.where(np.isnan(self.sketch.walls[kept]).any(axis=1), np.nan, 0.0)
         return Knots(
             self.sketch.positions[kept],
-            self.sketch.turns[kept],
-            self.sketch.headings[kept],
+            self.sketch.turns[kept] + both_sides,
+            self.sketch.headings[kept] + both_sides,
             self.sketch.covariances[kept],
         )
 

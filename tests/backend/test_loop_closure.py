@@ -68,7 +68,6 @@ def test_no_tie_between_other_poses_ever_adds_doubt(seed: int) -> None:
     assert np.all(np.array(drift.seen_from(19, places)) <= before + 1e-12)
 
 
-@pytest.mark.xfail(strict=True, reason="two ties between the same poses are added up instead of the surer one taken")
 def test_a_second_tie_between_the_same_poses_does_not_add_doubt() -> None:
     drift, places = chain(5), straight(5)[:, :2]
     before, _ = drift.seen_from(4, places)

@@ -103,7 +103,6 @@ def test_a_map_seen_only_from_the_other_side_of_its_walls_is_refused() -> None:
     assert isinstance(refused, str)
 
 
-@pytest.mark.xfail(strict=True, reason="the median spread of a scan without surface is a warning instead of a refusal")
 def test_a_blind_scan_is_refused() -> None:
     rng = np.random.default_rng(4)
     blind = perceive(Scan(BEARINGS, np.full(360, np.inf), LIDAR, np.zeros(3), 0.0), FrontendSettings())
