@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import fresnel
 
 from frontend.scan import Floats
 from frontend.sensors.rays import trace
@@ -36,23 +37,28 @@ class Echoes:
 
 @dataclass(frozen=True, eq=False)
 class _Fan:
-    """Rays (n,) around a place, followed over b surfaces: all arrays but `angles` are (n, b)."""
+    """Rays (n,) around a place, followed over b surfaces: all arrays but `angles` are (n, b), see Paths.
+
+    mirrored: share of the power left on arrival, after the mirrors before, there and back.
+    coherent: share that this surface would keep coherent.
+    """
 
     angles: Floats
     lengths: Floats
     hits: NDArray[np.int64]
-    along: Floats
-    mirrored: Floats  # share of the power left on arrival, after the mirrors before, there and back
-    coherent: Floats  # share this surface would keep coherent
+    sines: Floats
+    offsets: Floats
+    mirrored: Floats
+    coherent: Floats
 
 
 def echoes_around(surfaces: Surfaces, place: Floats, transducer: Transducer, rng: np.random.Generator) -> Echoes:
     """Every echo the sensor at `place` (2,) could hear, with the speckle of the rough walls drawn from `rng`."""
     fan = _fan(surfaces, place, transducer)
     parts = [
-        _scattered(surfaces, fan, transducer, rng),
+        _scattered(surfaces, fan, rng),
         _thrown_down(surfaces, fan, transducer),
-        _feet(surfaces, fan),
+        _feet(surfaces, fan, transducer),
         _corners(surfaces, fan),
         _edges(surfaces, place, fan, transducer),
     ]
@@ -69,17 +75,19 @@ def _fan(surfaces: Surfaces, place: Floats, transducer: Transducer) -> _Fan:
     angles = np.linspace(-np.pi, np.pi, RAYS, endpoint=False)
     # Slats throw the ray out of the plane and a convex face spreads it out: neither sends on what can be followed.
     mirrors = (surfaces.tilt == 0) & np.isinf(surfaces.radius)
-    lengths, hits, along = trace(surfaces, place, angles, mirrors, BOUNCES)
-    coherent = coherent_share(surfaces.roughness[hits], np.sqrt(1 - along**2), transducer.wavelength)
-    coherent[hits < 0] = 0.0
+    paths = trace(surfaces, place, angles, mirrors, BOUNCES)
+    cosines = np.sqrt(1 - paths.sines**2)
+    coherent = np.where(
+        paths.hits >= 0, coherent_share(surfaces.roughness[paths.hits], cosines, transducer.wavelength), 0.0
+    )
     before = np.concatenate([np.ones((RAYS, 1)), np.cumprod(coherent[:, :-1], axis=1)], axis=1)
-    return _Fan(angles, lengths, hits, along, before**2, coherent)
+    return _Fan(angles, *paths, before**2, coherent)
 
 
-def _scattered(surfaces: Surfaces, fan: _Fan, transducer: Transducer, rng: np.random.Generator) -> _Part:
+def _scattered(surfaces: Surfaces, fan: _Fan, rng: np.random.Generator) -> _Part:
     """Lambert's law from every ray, with fully developed speckle: exponential energies."""
     where = np.nonzero((fan.hits >= 0) & (surfaces.tilt[fan.hits] == 0))
-    cosine = np.sqrt(1 - fan.along[where] ** 2)
+    cosine = np.sqrt(1 - fan.sines[where] ** 2)
     share = (1 - fan.coherent[where]) * surfaces.albedo[fan.hits[where]] / np.pi
     energies = fan.mirrored[where] * share * cosine / fan.lengths[where] ** 2 * (2 * np.pi / RAYS)
     return fan.angles[where[0]], fan.lengths[where], energies * rng.exponential(size=energies.size)
@@ -88,27 +96,41 @@ def _scattered(surfaces: Surfaces, fan: _Fan, transducer: Transducer, rng: np.ra
 def _thrown_down(surfaces: Surfaces, fan: _Fan, transducer: Transducer) -> _Part:
     """A slat leaning by τ mirrors the ray to the floor, which scatters it back along the same path."""
     where = np.nonzero((fan.hits >= 0) & (surfaces.tilt[fan.hits] > 0))
-    cosine, tilt = np.sqrt(1 - fan.along[where] ** 2), surfaces.tilt[fan.hits[where]]
+    cosine, tilt = np.sqrt(1 - fan.sines[where] ** 2), surfaces.tilt[fan.hits[where]]
     sinking = 2 * cosine * np.cos(tilt) * np.sin(tilt)  # downward part of the mirrored direction
     lengths = fan.lengths[where] + transducer.height / np.maximum(sinking, 1e-6)
     share = fan.mirrored[where] * fan.coherent[where] ** 2 * FLOOR_ALBEDO / np.pi
     return fan.angles[where[0]], lengths, share * sinking / lengths**2 * (2 * np.pi / RAYS)
 
 
-def _feet(surfaces: Surfaces, fan: _Fan) -> _Part:
+def _feet(surfaces: Surfaces, fan: _Fan, transducer: Transducer) -> _Part:
     """Mirrors answer where a ray meets them square: the incidence changes its sign between two rays of one path."""
     followers = np.roll(fan.hits, -1, axis=0)
     # A round pole is a ring of facets finer than the fan: two rays that meet it have met the same face.
-    same_face = (fan.hits == followers) | np.isfinite(surfaces.radius[fan.hits] + surfaces.radius[followers])
-    same_path = np.logical_and.accumulate(same_face & (fan.hits >= 0) & (followers >= 0), axis=1)
-    after = np.roll(fan.along, -1, axis=0)
-    where = np.nonzero(same_path & ((fan.along < 0) != (after < 0)) & (surfaces.tilt[fan.hits] == 0))
-    share = fan.along[where] / (fan.along[where] - after[where])
+    round_face = np.isfinite(surfaces.radius[fan.hits] + surfaces.radius[followers])
+    met = (fan.hits >= 0) & (followers >= 0)
+    same_path = np.logical_and.accumulate(met & ((fan.hits == followers) | round_face), axis=1)
+    after = np.roll(fan.sines, -1, axis=0)
+    where = np.nonzero(same_path & ((fan.sines < 0) != (after < 0)) & (surfaces.tilt[fan.hits] == 0))
+    share = fan.sines[where] / (fan.sines[where] - after[where])
     lengths = (1 - share) * fan.lengths[where] + share * np.roll(fan.lengths, -1, axis=0)[where]
-    radius = surfaces.radius[fan.hits[where]]
-    convex = 1 / (1 + lengths / radius)
-    energies = fan.mirrored[where] * fan.coherent[where] * convex / (2 * lengths) ** 2
+    offsets = (1 - share) * fan.offsets[where] + share * np.roll(fan.offsets, -1, axis=0)[where]
+    faces = surfaces.segments[fan.hits[where]]
+    widths = np.linalg.norm(faces[:, 1] - faces[:, 0], axis=1)
+    whole = np.where(round_face[where], 1.0, fresnel_share(offsets, widths - offsets, transducer.wavelength * lengths))
+    convex = 1 / (1 + lengths / surfaces.radius[fan.hits[where]])
+    energies = fan.mirrored[where] * fan.coherent[where] * whole * convex / (2 * lengths) ** 2
     return fan.angles[where[0]] + share * 2 * np.pi / RAYS, lengths, energies
+
+
+def fresnel_share(before: Floats, after: Floats, zone: Floats) -> Floats:
+    """Power (n,) of a strip over that of an endless mirror: it reaches `before` and `after` metres from the foot.
+
+    zone: wavelength times range; a strip much narrower than its root answers little, and its very edge a quarter.
+    """
+    ends = np.stack([-before, after]) * 2 / np.sqrt(zone)
+    sines, cosines = fresnel(ends)
+    return np.asarray(((sines[1] - sines[0]) ** 2 + (cosines[1] - cosines[0]) ** 2) / 2)
 
 
 def _corners(surfaces: Surfaces, fan: _Fan) -> _Part:
@@ -117,9 +139,11 @@ def _corners(surfaces: Surfaces, fan: _Fan) -> _Part:
     same_way = np.logical_and.accumulate((fan.hits == followers) & (fan.hits >= 0), axis=1)
     arrived = np.concatenate([np.ones((RAYS, 1), bool), same_way[:, :-1]], axis=1)
     square = np.abs(surfaces.corner_turns() - np.pi / 2) < SQUARE
+    # An odd number of mirrors turns the order of the walls around.
+    meet = square[fan.hits] & (surfaces.following[fan.hits] == followers)
+    meet |= square[followers] & (surfaces.following[followers] == fan.hits)
     both = (fan.hits >= 0) & (followers >= 0)
-    meet = both & square[fan.hits] & (surfaces.following[fan.hits] == followers)
-    where = np.nonzero(arrived & meet & (surfaces.tilt[fan.hits] + surfaces.tilt[followers] == 0))
+    where = np.nonzero(arrived & both & meet & (surfaces.tilt[fan.hits] + surfaces.tilt[followers] == 0))
     lengths = (fan.lengths[where] + np.roll(fan.lengths, -1, axis=0)[where]) / 2
     share = fan.mirrored[where] * fan.coherent[where] * np.roll(fan.coherent, -1, axis=0)[where]
     return fan.angles[where[0]] + np.pi / RAYS, lengths, share / (2 * lengths) ** 2
@@ -136,12 +160,9 @@ def _edges(surfaces: Surfaces, place: Floats, fan: _Fan, transducer: Transducer)
     seen = np.any((beside == sharp) | (beside == surfaces.following[sharp]), axis=0)
     sharp, directions, lengths = sharp[seen], directions[seen], lengths[seen]
     wedge = (np.pi - turns[sharp]) / np.pi  # exterior angle over π
-    # Angle from the first face, seen from the edge towards the sensor, inside 0…wedge·π of free space.
-    face = surfaces.tangents[sharp]
-    back = -np.stack([np.cos(directions), np.sin(directions)], axis=1)
-    from_face = np.mod(
-        np.arctan2(-face[:, 0] * -back[:, 1] + face[:, 1] * -back[:, 0], -np.sum(face * back, 1)), 2 * np.pi
-    )
+    # Seen from the edge, the way back to the sensor turns clockwise from the first face through free space.
+    (along, across), (x, y) = surfaces.tangents[sharp].T, (np.cos(directions), np.sin(directions))
+    from_face = np.mod(np.arctan2(across * x - along * y, along * x + across * y), 2 * np.pi)
     width = diffraction_width(wedge, from_face, transducer.wavelength)
     coherent = coherent_share(surfaces.roughness[sharp], np.ones(sharp.size), transducer.wavelength)
     # At the rim of the mirrored zone half the amplitude of the mirror is left, never more.

@@ -1,5 +1,7 @@
 """Rays: where straight lines from a place first meet the surfaces, and where mirrors send them on."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -52,42 +54,46 @@ def incidence_cosines(surfaces: Surfaces, angles: Floats, hits: NDArray[np.int64
     return np.asarray(np.abs(np.cos(angles) * tangents[:, 1] - np.sin(angles) * tangents[:, 0]))
 
 
+class Paths(NamedTuple):
+    """Rays (n,) followed over mirrors, each array (n, b): one column per surface met.
+
+    lengths: metres travelled to it, inf if none. hits: its index, −1 if none. sines: of the incidence, signed along the
+    segment. offsets: metres from the segment's start to where it was met.
+    """
+
+    lengths: Floats
+    hits: NDArray[np.int64]
+    sines: Floats
+    offsets: Floats
+
+
+def trace(surfaces: Surfaces, origin: Floats, angles: Floats, mirrors: NDArray[np.bool_], bounces: int) -> Paths:
+    """Follow rays (n,) over up to `bounces` mirrors, the surfaces (m,) that send a ray on."""
+    shape = (angles.size, bounces + 1)
+    paths = Paths(np.full(shape, np.inf), np.full(shape, -1, np.int64), np.zeros(shape), np.zeros(shape))
+    _trace(origin, angles, surfaces.segments, mirrors, paths)
+    return paths
+
+
 @njit(cache=True)  # type: ignore[untyped-decorator]
-def _trace(
-    origin: Floats, angles: Floats, segments: Floats, mirrors: NDArray[np.bool_], bounces: int
-) -> tuple[Floats, NDArray[np.int64], Floats]:
-    lengths = np.full((angles.size, bounces + 1), np.inf)
-    hits = np.full((angles.size, bounces + 1), -1, np.int64)
-    along = np.zeros((angles.size, bounces + 1))
-    here, direction, along_wall = np.empty(2), np.empty(2), np.empty(2)
+def _trace(origin: Floats, angles: Floats, segments: Floats, mirrors: NDArray[np.bool_], paths: Paths) -> None:
+    here, direction, tangent = np.empty(2), np.empty(2), np.empty(2)
     for k in range(angles.size):
         here[:] = origin
         direction[0], direction[1] = np.cos(angles[k]), np.sin(angles[k])
         travelled, left = 0.0, -1
-        for b in range(bounces + 1):
+        for b in range(paths.lengths.shape[1]):
             distance, m = _first_hit(here, direction, segments, left)
             if m < 0:
                 break
             travelled += distance
-            along_wall[:] = segments[m, 1] - segments[m, 0]
-            along_wall /= np.hypot(along_wall[0], along_wall[1])
-            slide = direction[0] * along_wall[0] + direction[1] * along_wall[1]
-            lengths[k, b], hits[k, b], along[k, b] = travelled, m, slide
+            here[:] = here + distance * direction
+            tangent[:] = segments[m, 1] - segments[m, 0]
+            tangent /= np.hypot(tangent[0], tangent[1])
+            sine = direction[0] * tangent[0] + direction[1] * tangent[1]
+            paths.lengths[k, b], paths.hits[k, b], paths.sines[k, b] = travelled, m, sine
+            paths.offsets[k, b] = np.dot(here - segments[m, 0], tangent)
             if not mirrors[m]:
                 break
-            here[:] = here + distance * direction
-            direction[:] = 2.0 * slide * along_wall - direction
+            direction[:] = 2.0 * sine * tangent - direction
             left = m
-    return lengths, hits, along
-
-
-def trace(
-    surfaces: Surfaces, origin: Floats, angles: Floats, mirrors: NDArray[np.bool_], bounces: int
-) -> tuple[Floats, NDArray[np.int64], Floats]:
-    """Follow rays (n,) over up to `bounces` mirrored surfaces.
-
-    mirrors: (m,) which surfaces send a ray on. Returns, each (n, bounces + 1): the path length to every surface met
-    (inf if none), its index (−1), and the sine of the incidence there, signed along the segment.
-    """
-    found: tuple[Floats, NDArray[np.int64], Floats] = _trace(origin, angles, surfaces.segments, mirrors, bounces)
-    return found

@@ -51,7 +51,10 @@ def first_echoes(echoes: Echoes, headings: Floats, transducer: Transducer) -> Fl
     The detector adds up what arrives during one chirp, so a weak echo is found late: by up to 7.2 in (§2.1).
     """
     _, of_point, of_wall = pattern_tables(transducer)
-    columns = np.stack([echoes.directions, echoes.lengths, echoes.energies, echoes.tall], axis=1)
+    # All the fainter echoes of a place together stay below a hundredth of the threshold.
+    faintest = 0.01 * transducer.threshold / max(1, echoes.energies.size)
+    audible = echoes.energies * np.where(echoes.tall, of_wall.max(), of_point.max()) > faintest
+    columns = np.stack([echoes.directions, echoes.lengths, echoes.energies, echoes.tall], axis=1)[audible]
     gate = Gate(SONAR.min_range, SONAR.max_range, transducer.chirp_length, transducer.threshold)
     return np.asarray(_crossings(headings, columns, np.stack([of_point, of_wall]), gate))
 
@@ -75,7 +78,8 @@ def _crossings(headings: Floats, echoes: Floats, power: Floats, gate: Gate) -> F
     for h in range(headings.size):
         change = np.zeros(steps + 1)
         for e in range(echoes.shape[0]):
-            off = abs((echoes[e, 0] - headings[h] + np.pi) % (2 * np.pi) - np.pi) * per_radian
+            turn = echoes[e, 0] - headings[h]
+            off = abs(turn - 2 * np.pi * np.rint(turn / (2 * np.pi))) * per_radian
             cell = int(off)
             if cell >= power.shape[1] - 1 or echoes[e, 1] >= gate.reach:
                 continue

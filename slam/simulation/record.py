@@ -1,23 +1,14 @@
 """A recording made in a floor plan: a folder with the readings, the sensor's facts, the truth and the true poses."""
 
-import csv
-import gzip
-import io
-import json
-import shutil
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from tempfile import mkdtemp
 
 import numpy as np
 from numpy.typing import NDArray
-from shapely import LineString, Point
-from shapely.affinity import affine_transform
-from shapely.geometry import mapping
-from shapely.geometry.base import BaseGeometry
+from shapely import Point
 
-from frontend.rigid_motion import compose, inverse
+from frontend.rigid_motion import compose
 from frontend.scan import Floats, Scan, Sensor
 from frontend.sensors.infrared import InfraredDetector, infrared_codes
 from frontend.sensors.lidar import LIDAR, lidar_ranges
@@ -25,10 +16,17 @@ from frontend.sensors.sonar import SONAR, sonar_ranges
 from frontend.sensors.surfaces import Surfaces
 from frontend.sensors.time_of_flight import TIME_OF_FLIGHT, time_of_flight_ranges
 from frontend.sensors.transducer import Transducer
-from slam.simulation.trajectory import WheelNoise, in_first_frame, read_poses, true_poses, wheel_odometry
-from slam.simulation.world import World, read_plan
-
-SECONDS_PER_SCAN = 30.0  # a head that stops 256 times a turn takes its time
+from slam.simulation.recording_files import (
+    FACTS,
+    readings_csv,
+    readings_name,
+    recording_toml,
+    truth_geojson,
+    write_recording,
+)
+from slam.simulation.trajectory import WheelNoise, in_first_frame, true_poses, wheel_odometry
+from slam.simulation.world import Drive, World, read_plan
+from slam.trajectory_file import read_trajectory, tum_text
 
 Reading = tuple[Floats, NDArray[np.int16] | None]
 
@@ -39,10 +37,11 @@ class SimulationError(Exception):
 
 @dataclass(frozen=True)
 class SimulatedSensor:
-    """A sensor that can be simulated: its facts, its bearings (n,), and how it reads a world from a pose."""
+    """A sensor that can be simulated: facts, bearings (n,), seconds a scan, and how it reads a world from a pose."""
 
     sensor: Sensor
     bearings: tuple[float, ...]
+    seconds: float
     read: Callable[[Surfaces, Floats, Floats, np.random.Generator], Reading]
 
 
@@ -65,19 +64,22 @@ def _full_turn(count: int) -> tuple[float, ...]:
 
 
 SENSORS = {
-    "sonar_infrared": SimulatedSensor(SONAR, _full_turn(256), _sonar_infrared),
-    "lidar": SimulatedSensor(LIDAR, _full_turn(360), _lidar),
-    "time_of_flight": SimulatedSensor(TIME_OF_FLIGHT, _full_turn(64), _time_of_flight),
+    "sonar_infrared": SimulatedSensor(SONAR, _full_turn(256), 30.0, _sonar_infrared),
+    "lidar": SimulatedSensor(LIDAR, _full_turn(360), 0.5, _lidar),
+    "time_of_flight": SimulatedSensor(TIME_OF_FLIGHT, _full_turn(64), 2.0, _time_of_flight),
 }
 
 
 @dataclass(frozen=True)
 class Recipe:
-    """What makes a recording besides its world: the sensor's name, the seed, and how the wheels err."""
+    """What makes a recording besides its world: the sensor's name, the seed of all noise, and how the wheels err.
+
+    wheels: None takes what the plan's drive says.
+    """
 
     sensor: str = "sonar_infrared"
     seed: int = 0
-    wheels: WheelNoise = field(default_factory=WheelNoise)
+    wheels: WheelNoise | None = None
 
     @property
     def simulated(self) -> SimulatedSensor:
@@ -86,29 +88,42 @@ class Recipe:
             raise SimulationError(f"no sensor is called {self.sensor!r}, known are {', '.join(SENSORS)}")
         return SENSORS[self.sensor]
 
+    def wheel_noise(self, drive: Drive | None) -> WheelNoise:
+        """The recipe's own wheels, or those of the drive."""
+        if self.wheels is not None or drive is None:
+            return self.wheels or WheelNoise()
+        unknown = sorted(set(drive.wheels) - set(WheelNoise.__dataclass_fields__))
+        if unknown:
+            raise SimulationError(f"the drive's wheels have no {unknown[0]!r}")
+        return WheelNoise(**drive.wheels)
+
 
 def simulate(plan: Path, recipe: Recipe, out: Path, poses: Path | None = None) -> None:
     """Drive through a plan file and write what the sensor read to the folder `out`.
 
     poses: a file of `time x y z qx qy qz qw` lines, true poses in the plan's frame; without it the plan's own drive.
-    Raises SimulationError, PlanError or TrajectoryError.
+    Raises SimulationError, PlanError, TrajectoryFileError or RecordingPlaceError.
     """
     world = read_plan(plan)
     if poses is not None:
-        stood = read_poses(poses)
+        stood = read_trajectory(poses).poses
     elif world.drive is not None:
         stood = true_poses(world.drive)
     else:
         raise SimulationError(f"{plan} has no drive, so a file of poses must be given")
+    scans = drive_through(world, stood, recipe)
     command = (
         f"roomsketch simulate {plan.as_posix()} --sensor {recipe.sensor} --out {out.as_posix()} --seed {recipe.seed}"
     )
     if poses is not None:
         command += f" --poses {poses.as_posix()}"
-    scans = drive_through(world, stood, recipe)
-    write_recording(
-        out, {"recording.toml": recording_toml(recipe, world, command, scans)} | files_of(world, stood, scans)
-    )
+    files = {
+        FACTS: recording_toml(world, command, recipe.wheel_noise(world.drive), scans),
+        readings_name(len(scans)): readings_csv(scans),
+        "truth.geojson": truth_geojson(world, stood[0]),
+        "true.tum": tum_text(np.array([scan.time for scan in scans]), in_first_frame(stood)).encode(),
+    }
+    write_recording(out, files)
 
 
 def drive_through(world: World, poses: Floats, recipe: Recipe) -> list[Scan]:
@@ -119,127 +134,12 @@ def drive_through(world: World, poses: Floats, recipe: Recipe) -> list[Scan]:
     simulated = recipe.simulated
     mount, bearings = np.array(simulated.sensor.mount), np.array(simulated.bearings)
     rng = np.random.default_rng(recipe.seed)
-    odometry = wheel_odometry(poses, recipe.wheels, rng)
+    odometry = wheel_odometry(poses, recipe.wheel_noise(world.drive), rng)
     scans = []
     for number, (pose, believed) in enumerate(zip(poses, odometry, strict=True)):
         ranges, infrared = simulated.read(world.surfaces, compose(pose, mount), bearings, rng)
-        scans.append(Scan(bearings, ranges, simulated.sensor, believed, number * SECONDS_PER_SCAN, infrared))
+        scans.append(Scan(bearings, ranges, simulated.sensor, believed, number * simulated.seconds, infrared))
     return scans
-
-
-def files_of(world: World, poses: Floats, scans: list[Scan]) -> dict[str, bytes]:
-    """The readings, the truth and the true poses, by file name."""
-    return {
-        readings_name(len(scans)): readings_csv(scans),
-        "truth.geojson": truth_geojson(world, poses[0]),
-        "true.tum": tum_lines(in_first_frame(poses), scans),
-    }
-
-
-def write_recording(folder: Path, files: dict[str, bytes]) -> None:
-    """Write a recording's files, all or nothing: an older recording of that name stays until the new one is whole."""
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    making = Path(mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
-    try:
-        for name, content in files.items():
-            (making / name).write_bytes(content)
-        making.chmod(0o755)
-        if folder.exists():
-            shutil.rmtree(folder)
-        making.rename(folder)
-    except BaseException:
-        shutil.rmtree(making, ignore_errors=True)
-        raise
-
-
-def readings_name(scans: int) -> str:
-    """Long recordings are compressed."""
-    return "readings.csv" if scans <= 10 else "readings.csv.gz"
-
-
-def readings_csv(scans: list[Scan]) -> bytes:
-    """One line per scan under a header that names every bearing in degrees; compressed where the name says so."""
-    degrees = [f"{bearing:.4f}" for bearing in np.degrees(scans[0].bearings)]
-    header = ["time", "x", "y", "heading", *(f"range@{bearing}" for bearing in degrees)]
-    if scans[0].infrared is not None:
-        header += [f"infrared@{bearing}" for bearing in degrees]
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows(_row(scan) for scan in scans)
-    plain = text.getvalue().encode()
-    return plain if readings_name(len(scans)).endswith("csv") else gzip.compress(plain, mtime=0)
-
-
-def _row(scan: Scan) -> list[str]:
-    pose = [f"{scan.time:.3f}", *(f"{value:.6f}" for value in scan.odometry)]
-    ranges = ["" if np.isinf(distance) else f"{distance:.4f}" for distance in scan.ranges]
-    codes = [] if scan.infrared is None else [f"{code:d}" for code in scan.infrared]
-    return pose + ranges + codes
-
-
-def recording_toml(recipe: Recipe, world: World, command: str, scans: list[Scan]) -> bytes:
-    """The facts of a recording: SI units, angles in degrees."""
-    sensor = scans[0].sensor
-    mount = [sensor.mount[0], sensor.mount[1], float(np.degrees(sensor.mount[2]))]
-    infrared = [] if sensor.infrared_range is None else [f"infrared_range = {sensor.infrared_range:.4f}"]
-    lines = [
-        f"name = {json.dumps(world.name)}",
-        f"description = {json.dumps(world.description)}",
-        f"command = {json.dumps(command)}",
-        f'readings = "{readings_name(len(scans))}"',
-        "",
-        "[sensor]",
-        f'kind = "{sensor.kind}"',
-        f"min_range = {sensor.min_range:.4f}",
-        f"max_range = {sensor.max_range:.4f}",
-        f"half_beam_degrees = {np.degrees(sensor.half_beam):.2f}",
-        f"range_noise = {sensor.range_noise:.4f}",
-        f"quantum = {sensor.quantum:.6f}",
-        *infrared,
-        f"mount = [{', '.join(f'{value:g}' for value in mount)}]",
-        "",
-        "[odometry]",
-        f"distance_noise = {recipe.wheels.distance:g}",
-        f"turn_noise = {recipe.wheels.turn:g}",
-        f"turn_per_metre_noise = {recipe.wheels.turn_per_metre:g}",
-        "",
-    ]
-    return "\n".join(lines).encode()
-
-
-def truth_geojson(world: World, first: Floats) -> bytes:
-    """The plan in the frame of the first true pose (3,): free space, walls, obstacles and doors."""
-    parts: list[tuple[BaseGeometry, dict[str, object]]] = [(world.free, {"kind": "free"})]
-    for body in world.solids:
-        kind = "obstacle" if body.kind == "obstacle" else "wall"
-        parts.append((body.outline, {"kind": kind, "material": body.material}))
-    parts += [
-        (LineString(door.jambs), {"kind": "door", "name": door.name, "open": door.is_open}) for door in world.doors
-    ]
-    features = [
-        {"type": "Feature", "properties": properties, "geometry": _placed(geometry, inverse(first))}
-        for geometry, properties in parts
-    ]
-    return json.dumps({"type": "FeatureCollection", "features": features}).encode() + b"\n"
-
-
-def _placed(geometry: BaseGeometry, motion: Floats) -> dict[str, object]:
-    cosine, sine = float(np.cos(motion[2])), float(np.sin(motion[2]))
-    moved = affine_transform(geometry, [cosine, -sine, sine, cosine, float(motion[0]), float(motion[1])])
-    rounded: dict[str, object] = json.loads(
-        json.dumps(mapping(moved)), parse_float=lambda digits: round(float(digits), 4)
-    )
-    return rounded
-
-
-def tum_lines(poses: Floats, scans: list[Scan]) -> bytes:
-    """Lines of time x y z qx qy qz qw for poses (p, 3)."""
-    lines = [
-        f"{scan.time:.3f} {x:.6f} {y:.6f} 0 0 0 {np.sin(heading / 2):.8f} {np.cos(heading / 2):.8f}\n"
-        for scan, (x, y, heading) in zip(scans, poses, strict=True)
-    ]
-    return "".join(lines).encode()
 
 
 def lidar_scan(world: World, pose: Floats, sensor: Sensor, rng: np.random.Generator) -> Floats:

@@ -2,17 +2,12 @@
 
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 
 from frontend.rigid_motion import between, compose, wrap
 from frontend.scan import Floats
 from slam.simulation.world import Drive
-
-
-class TrajectoryError(Exception):
-    """Poses that cannot be read; the message names the file and the line."""
 
 
 @dataclass(frozen=True)
@@ -44,26 +39,6 @@ def true_poses(drive: Drive) -> Floats:
     share = ((along - reached[leg]) / lengths[leg])[:, None]
     points = drive.waypoints[leg] + share * legs[leg]
     return np.column_stack([points, np.arctan2(legs[leg, 1], legs[leg, 0])])
-
-
-def read_poses(path: Path) -> Floats:
-    """Poses (p, 3) of a file of `time x y z qx qy qz qw` lines; raises TrajectoryError with the line at fault."""
-    poses = []
-    try:
-        lines = path.read_text().splitlines()
-    except OSError as error:
-        raise TrajectoryError(f"{path}: cannot be read: {error.strerror}") from error
-    for number, line in enumerate(lines, start=1):
-        if not line.strip() or line.startswith("#"):
-            continue
-        try:
-            _, x, y, _, qx, qy, qz, qw = (float(word) for word in line.split())
-        except ValueError as error:
-            raise TrajectoryError(f"{path} line {number}: needs time x y z qx qy qz qw, but is {line!r}") from error
-        poses.append([x, y, np.arctan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy**2 + qz**2))])
-    if not poses:
-        raise TrajectoryError(f"{path}: holds no poses")
-    return np.array(poses)
 
 
 def _headings_ahead(points: Floats) -> Floats:

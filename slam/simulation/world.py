@@ -6,12 +6,13 @@ and, for round things, `radius`), `door` (a line between the jambs; `name`, `ope
 """
 
 import json
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from shapely import LineString, MultiPolygon, Point, Polygon, STRtree
 from shapely.geometry import shape
 from shapely.geometry.base import BaseGeometry
@@ -56,11 +57,16 @@ class PlanDoor:
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """Waypoints (p, 2). step: metres between scans, None: at the waypoints only. headings: (p,) radians or None."""
+    """Waypoints (p, 2) and how the robot passes them.
+
+    step: metres between scans, None: at the waypoints only. headings: (p,) radians, None: facing ahead.
+    wheels: how they err, by the field names of the wheel noise.
+    """
 
     waypoints: Floats
-    step: float | None
-    headings: Floats | None
+    step: float | None = None
+    headings: Floats | None = None
+    wheels: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,7 +156,7 @@ def _drive(line: LineString, properties: dict[str, Any]) -> Drive:
     if headings is not None and len(headings) != len(line.coords):
         raise PlanError(f"the drive has {len(line.coords)} waypoints, but {len(headings)} headings")
     radians = None if headings is None else np.radians(np.array(headings, float))
-    return Drive(np.array(line.coords), properties.get("step"), radians)
+    return Drive(np.array(line.coords), properties.get("step"), radians, properties.get("wheels", {}))
 
 
 def _free_space(solids: list[Solid], drive: Drive | None) -> Polygon:
@@ -172,16 +178,25 @@ def _free_space(solids: list[Solid], drive: Drive | None) -> Polygon:
 
 def _surfaces(free: Polygon, solids: list[Solid]) -> Surfaces:
     """The faces of the free space, each with the material of the solid it belongs to."""
-    oriented = shapely.orient_polygons(shapely.segmentize(free, np.inf), exterior_cw=False)
-    rings = [np.array(ring.coords)[:-1] for ring in (oriented.exterior, *oriented.interiors)]
+    oriented = shapely.orient_polygons(free, exterior_cw=False)
     tree = STRtree([body.outline.boundary for body in solids])
-    materials, radii = [], []
-    for ring in rings:
-        middles = shapely.points((ring + np.roll(ring, -1, axis=0)) / 2)
-        owners = [solids[index] for index in tree.nearest(middles)]
-        materials.append([body.made_of for body in owners])
-        radii.append(np.array([body.radius for body in owners]))
+    rings, materials, radii = [], [], []
+    for line in (oriented.exterior, *oriented.interiors):
+        ring = np.array(line.coords)[:-1]
+        owners = [solids[index] for index in tree.nearest(shapely.points((ring + np.roll(ring, -1, axis=0)) / 2))]
+        kept = _real_corners(ring, owners)
+        rings.append(ring[kept])
+        materials.append([owners[index].made_of for index in kept])
+        radii.append(np.array([owners[index].radius for index in kept]))
     return join_rings(rings, materials, radii)
+
+
+def _real_corners(ring: Floats, owners: list[Solid]) -> NDArray[np.int64]:
+    """Corners of a ring (k, 2) where it turns or the material changes: a wall is one face, however drawn."""
+    before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
+    turn = np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], np.sum(before * after, axis=1))
+    changes = [ours.made_of != theirs.made_of for ours, theirs in zip(owners, owners[-1:] + owners[:-1], strict=True)]
+    return np.flatnonzero((np.abs(turn) > 1e-4) | np.array(changes))
 
 
 def visible_free_space(world: World, poses: Floats, reach: float) -> Polygon | MultiPolygon:
