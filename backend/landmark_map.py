@@ -21,10 +21,7 @@ class LandmarkSettings:
 
 @dataclass(frozen=True, eq=False)
 class Knots:
-    """Landmark knots of one scan: positions (k, 2), turns (k,), headings (k,), covariances (k, 2, 2), robot's frame.
-
-    Turn and heading are nan where only one side of the corner was seen: what the other side looks like is unknown.
-    """
+    """Landmark knots of one scan: positions (k, 2), turns (k,), headings (k,), covariances (k, 2, 2), robot's frame."""
 
     positions: Floats
     turns: Floats
@@ -65,8 +62,6 @@ class LandmarkMap:
         for k, landmark in enumerate(self._match(placed, knots, headings, pose[2])):
             known = landmark >= 0
             index = int(landmark) if known else self._new(placed[k], knots.turns[k], headings[k])
-            if np.isnan(self._turns[index]):
-                self._turns[index], self._headings[index] = knots.turns[k], headings[k]
             seen = self._sightings[index]
             seen.append(Sighting(pose_index, index, knots.positions[k], knots.covariances[k]))
             if len(seen) == self.settings.proven:
@@ -85,11 +80,10 @@ class LandmarkMap:
         spread = axes @ knots.covariances @ axes.T + self.settings.doubt**2 * np.eye(2)
         offsets = placed[:, None] - self.positions[None]
         distance = np.einsum("kli,kij,klj->kl", offsets, np.linalg.inv(spread), offsets)
-        unlike = np.fmax(
+        unlike = np.maximum(
             np.abs(_wrapped(knots.turns[:, None] - self._turns[None])),
             np.abs(_wrapped(headings[:, None] - self._headings[None])),
         )
-        # A nan is not unlike anything: a corner seen from one side may be any corner at that place.
         distance[unlike > self.settings.alike] = np.inf
         for flat in np.argsort(distance, axis=None):
             k, landmark = np.unravel_index(flat, distance.shape)

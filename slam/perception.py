@@ -38,13 +38,12 @@ class Percept:
 
     @property
     def knots(self) -> Knots:
-        """The landmark knots of the sketch."""
-        kept = self.sketch.landmark
-        both_sides = np.where(np.isnan(self.sketch.walls[kept]).any(axis=1), np.nan, 0.0)
+        """The landmark knots of the sketch whose both sides were seen: a half-seen corner moves with the viewpoint."""
+        kept = self.sketch.landmark & ~np.isnan(self.sketch.walls).any(axis=1)
         return Knots(
             self.sketch.positions[kept],
-            self.sketch.turns[kept] + both_sides,
-            self.sketch.headings[kept] + both_sides,
+            self.sketch.turns[kept],
+            self.sketch.headings[kept],
             self.sketch.covariances[kept],
         )
 
