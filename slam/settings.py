@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from backend.polygon_merging import MergeSettings
 from slam.mapper import MapperSettings
 from slam.perception import FrontendSettings
+from slam.planning import PlanningSettings
 
 
 @dataclass(frozen=True)
@@ -14,3 +15,4 @@ class Settings:
     frontend: FrontendSettings = field(default_factory=FrontendSettings)
     poses: MapperSettings = field(default_factory=MapperSettings)
     merging: MergeSettings = field(default_factory=MergeSettings)
+    planning: PlanningSettings = field(default_factory=PlanningSettings)

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from frontend.scan import Floats, Scan, Sensor
-from slam.readers.recording import Recording, RecordingError
+from slam.readers.recording import DamagedLine, Recording, RecordingError
 from slam.readers.sieve import LineError, Sieve, in_time, numbers, refuse_impossible
+from slam.trajectory_file import Trajectory
 
 # Logs print microseconds at best and were written in bursts: scans of one stamp are told apart by this much, seconds.
 TIE_STEP = 1e-5
@@ -35,7 +36,8 @@ def read_carmen(path: Path, strict: bool) -> Recording:
         )
     sensor = Sensor("lidar", max_range=_limit(scans, path), mount=(_front_laser_offset(lines), 0.0, 0.0))
     seen = [_with_returns(scan, sensor, time) for scan, time in zip(scans, times.tolist(), strict=True)]
-    return Recording(path.name.split(".")[0], tuple(seen), tuple(sieve.damaged))
+    trail, damaged = _odometry(lines, path, strict)
+    return Recording(path.name.split(".")[0], tuple(seen), (*sieve.damaged, *damaged), odometry=trail)
 
 
 def no_return_value(ranges: Floats) -> float:
@@ -100,6 +102,25 @@ def _robotlaser(text: str, strict: bool) -> Scan:
 
 
 PARSERS = {"FLASER": _flaser, "ROBOTLASER1": _robotlaser}
+
+
+def _odometry(lines: list[tuple[int, str]], path: Path, strict: bool) -> tuple[Trajectory | None, list[DamagedLine]]:
+    """Every ODOM line (x, y, heading, two speeds, acceleration, time), and the damaged ones; None without any."""
+    sieve = Sieve(path, strict=strict)
+    rows = list(sieve.through([(n, text) for n, text in lines if text.startswith("ODOM ")], _odom))
+    if not rows:
+        return None, sieve.damaged
+    places = np.array(rows)
+    later = places[:, 3] > np.maximum.accumulate(np.concatenate([[-np.inf], places[:-1, 3]]))
+    kept = places[later]
+    return Trajectory(kept[:, 3], kept[:, :2], kept[:, 2]), sieve.damaged
+
+
+def _odom(text: str) -> Floats:
+    fields = text.split()
+    if len(fields) < 8:
+        raise LineError(f"ODOM has {len(fields) - 1} values, but needs a pose, three speeds and a time")
+    return _finite([*fields[1:4], fields[7]])
 
 
 def _concerns(text: str, keyword: str) -> bool:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from frontend.scan import Scan
+from slam.trajectory_file import Trajectory
 
 
 class RecordingError(Exception):
@@ -32,9 +33,14 @@ class OdometryNoise:
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """Scans in the order of their times, at least one; odometry_noise is None where nobody measured it."""
+    """Scans in the order of their times, at least one.
+
+    odometry_noise: None where nobody measured it. odometry: raw dead reckoning between the scans, where the file has
+    more of it than the scans carry.
+    """
 
     name: str
     scans: tuple[Scan, ...]
     damaged: tuple[DamagedLine, ...] = ()
     odometry_noise: OdometryNoise | None = None
+    odometry: Trajectory | None = None

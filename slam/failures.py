@@ -1,0 +1,39 @@
+"""Everything that can go wrong with what a user gives us: each of these is one sentence, and no bug of ours."""
+
+from backend.polygon_merging import MergingError
+from frontend.registration import RegistrationError
+from frontend.scan import ScanError
+from planners.path import PlanningError
+from planners.robot import RobotError
+from planners.world import WorldError
+from slam.boundary_scores import MapScoreError
+from slam.readers.recording import RecordingError
+from slam.result_folder import ResultError
+from slam.room_file import RoomFileError
+from slam.simulation.record import SimulationError
+from slam.simulation.recording_files import RecordingPlaceError
+from slam.simulation.world import PlanError
+from slam.toml_file import TomlFileError
+from slam.trajectory_file import TrajectoryFileError
+from slam.trajectory_scores import RelationsError
+from slam.whole_output import OutputError
+
+FAILURES = (
+    MapScoreError,
+    MergingError,
+    OutputError,
+    PlanError,
+    PlanningError,
+    RecordingError,
+    RecordingPlaceError,
+    RegistrationError,
+    RelationsError,
+    ResultError,
+    RobotError,
+    RoomFileError,
+    ScanError,
+    SimulationError,
+    TomlFileError,
+    TrajectoryFileError,
+    WorldError,
+)

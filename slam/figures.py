@@ -1,0 +1,237 @@
+"""The paper's figures (Flynn 1988, Figs 8–13): boundaries raw and redrawn, sketches, views overlaid, the map, paths."""
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import numpy as np
+import shapely
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PatchCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Ellipse, PathPatch
+from matplotlib.path import Path as Outline
+from shapely import MultiPolygon, Polygon
+
+from backend.room_map import MapEdgeKind, RoomMap
+from backend.view import View
+from frontend.contour import Contour, EdgeKind
+from frontend.fusion import FusedScan
+from frontend.primal_sketch import KnotKind
+from frontend.rigid_motion import transform
+from frontend.scan import Floats
+from slam.perception import Percept
+from slam.story import Story
+
+PANELS = 3  # views shown one by one, spread evenly over the drive
+DOTS_PER_INCH = 110
+
+FREE, INK, FAINT, FAKE, OPENED, SKETCH = "#dce9f5", "#1b1b1b", "#b5b5b5", "#d98c00", "#009e73", "#0b62a8"
+LANDMARK, INFERRED = "#c23b80", "#8a6fb3"
+PLANNER_INKS = ("#d55e00", "#0072b2")
+EDGE_STYLES = {
+    EdgeKind.REAL: ("surface", INK, "solid"),
+    EdgeKind.OCCLUSION: ("filler", FAKE, "dotted"),
+    EdgeKind.NO_RETURN: ("no return", FAINT, "dotted"),
+    EdgeKind.SIDE: ("end of the view", FAINT, "dashed"),
+    EdgeKind.DOOR_ARC: ("door arc", OPENED, "solid"),
+}
+
+
+def draw(story: Story, folder: Path) -> None:
+    """Write every figure into `folder` as PNG."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, figure in FIGURES.items():
+        figure(story).savefig(folder / f"{name}.png", dpi=DOTS_PER_INCH, bbox_inches="tight")
+
+
+def raw_boundaries(story: Story) -> Figure:
+    """The readings as the sensor gave them, joined in order."""
+    return _panels(story, _draw_raw, "as the sensor read it")
+
+
+def redrawn_boundaries(story: Story) -> Figure:
+    """The contours after fusion, surface told apart from filler."""
+    return _panels(story, _draw_contour, "redrawn")
+
+
+def sketches(story: Story) -> Figure:
+    """Knots and lines of each view; landmark knots with their 2-sigma ellipses."""
+    return _panels(story, _draw_sketch, "primal sketch")
+
+
+def overlaid_views(story: Story) -> Figure:
+    """All views at their estimated poses: free space under, surface over."""
+    placed = [Polygon(transform(view.boundary, pose)) for view, pose in _views(story)]
+    figure, axes = _sheet(f"{len(placed)} views overlaid")
+    patches = PatchCollection([_patch(outline) for outline in placed], facecolor=FREE, edgecolor="none")
+    patches.set_alpha(max(0.02, 0.5 / len(placed) ** 0.5))
+    axes.add_collection(patches)
+    walls = [
+        transform(piece.reshape(-1, 2), pose).reshape(-1, 2, 2)
+        for percept, pose in zip(story.percepts, story.poses, strict=True)
+        if len(piece := _pieces(percept.contour, EdgeKind.REAL))
+    ]
+    _lines(axes, np.concatenate([np.empty((0, 2, 2)), *walls]), INK, width=0.6)
+    _draw_drive(axes, story.poses)
+    return _framed(figure, axes, shapely.get_coordinates(placed))
+
+
+def merged_map(story: Story) -> Figure:
+    """The room map with every edge's kind, doors, obstacles, landmarks and the drive."""
+    figure, axes = _sheet("the merged map")
+    _draw_room(axes, story.room)
+    _draw_drive(axes, story.poses)
+    axes.plot(*story.landmarks.T, "+", color=LANDMARK, markersize=5, label=f"{len(story.landmarks)} landmarks")
+    return _framed(figure, axes, shapely.get_coordinates(story.room.free))
+
+
+def planned_paths(story: Story) -> Figure:
+    """What each planner found from the first pose to the farthest, on the map's safety layer."""
+    figure, axes = _sheet("planned paths")
+    _draw_room(axes, story.room)
+    for (name, poses), ink in zip(story.paths.items(), PLANNER_INKS, strict=False):
+        axes.plot(poses[:, 0], poses[:, 1], "-", color=ink, linewidth=2, label=name)
+        axes.plot(*poses[0, :2], "o", color=ink, markersize=6)
+        axes.plot(*poses[-1, :2], "s", color=ink, markersize=6)
+    return _framed(figure, axes, shapely.get_coordinates(story.room.free))
+
+
+FIGURES: dict[str, Callable[[Story], Figure]] = {
+    "1_raw_boundaries": raw_boundaries,
+    "2_redrawn_boundaries": redrawn_boundaries,
+    "3_sketches": sketches,
+    "4_overlaid_views": overlaid_views,
+    "5_map": merged_map,
+    "6_paths": planned_paths,
+}
+
+
+def _panels(story: Story, draw_view: Callable[[Axes, Percept], None], title: str) -> Figure:
+    count = len(story.percepts)
+    shown = sorted({int(scan) for scan in np.linspace(0, count - 1, min(PANELS, count)).round()})
+    figure = Figure(figsize=(5 * len(shown) + 1.5, 5))
+    reach = np.concatenate([_raw_ends(story.percepts[scan].fused) for scan in shown])
+    low, high = reach.min(axis=0), reach.max(axis=0)
+    for axes, scan in zip(np.atleast_1d(figure.subplots(1, len(shown))), shown, strict=True):
+        draw_view(axes, story.percepts[scan])
+        axes.plot(0, 0, "o", color=SKETCH, markersize=5)
+        axes.set(title=f"view {scan + 1}, {title}", aspect="equal", xlabel="x (m)")
+        axes.set(xlim=(low[0] - 0.3, high[0] + 0.3), ylim=(low[1] - 0.3, high[1] + 0.3))
+    figure.axes[0].set_ylabel("y (m)")
+    _legend(figure.axes)
+    return figure
+
+
+def _draw_raw(axes: Axes, percept: Percept) -> None:
+    ring = _raw_ends(percept.fused)
+    axes.add_patch(_patch(Polygon(ring), facecolor=FREE, edgecolor=INK, linewidth=0.8))
+    lost = np.isinf(percept.fused.raw_ranges)
+    axes.plot(*ring[lost].T, "x", color=FAINT, markersize=4, label="no return")
+
+
+def _draw_contour(axes: Axes, percept: Percept) -> None:
+    contour = percept.contour
+    axes.add_patch(_patch(contour.free_space, facecolor=FREE, edgecolor="none"))
+    for kind, (label, ink, style) in EDGE_STYLES.items():
+        _lines(axes, _pieces(contour, kind), ink, label=label, style=style)
+    for jambs in percept.fused.jambs:
+        axes.plot(*jambs.T, "o", color=OPENED, markersize=5)
+
+
+def _draw_sketch(axes: Axes, percept: Percept) -> None:
+    knots = percept.sketch
+    _lines(axes, _pieces(percept.contour, EdgeKind.REAL), FAINT, label="surface")
+    _lines(axes, knots.lines.ends, SKETCH, label="line", width=1.8)
+    for kind in KnotKind:
+        chosen = knots.positions[knots.kinds == kind]
+        if kind != KnotKind.GEOMETRY:
+            label = kind.name.lower().replace("_", " ") if len(chosen) else "_nothing to name"
+            axes.plot(*chosen.T, "o", color=f"C{kind.value}", markersize=5, label=label)
+    for position, covariance in zip(knots.positions[knots.landmark], knots.covariances[knots.landmark], strict=True):
+        axes.add_patch(_ellipse(position, covariance))
+
+
+def _draw_room(axes: Axes, room: RoomMap) -> None:
+    for part in room.free.geoms:
+        axes.add_patch(_patch(part, facecolor=FREE, edgecolor="none"))
+    for kind, label, ink, style in (
+        (MapEdgeKind.REAL, "wall", INK, "solid"),
+        (MapEdgeKind.FRONTIER, "frontier", FAKE, "dashed"),
+    ):
+        pieces = np.array([[edge.start, edge.end] for edge in room.edges if edge.kind == kind]).reshape(-1, 2, 2)
+        _lines(axes, pieces, ink, label=label, style=style, width=1.4)
+    for inferred, label in ((False, "obstacle"), (True, "inferred obstacle")):
+        outlines = [body.outline for body in room.obstacles if body.inferred is inferred]
+        for number, outline in enumerate(outlines):
+            ink = INFERRED if inferred else INK
+            says = {"label": label} if number == 0 else {}
+            axes.add_patch(_patch(outline, facecolor=ink, alpha=0.35, edgecolor=ink, **says))
+    _lines(axes, np.array([door.jambs for door in room.doors]).reshape(-1, 2, 2), OPENED, label="door", width=3)
+
+
+def _draw_drive(axes: Axes, poses: Floats) -> None:
+    axes.plot(poses[:, 0], poses[:, 1], ".-", color=SKETCH, linewidth=0.6, markersize=2, label="drive")
+    axes.plot(*poses[0, :2], "o", color=SKETCH, markersize=5)
+
+
+def _sheet(title: str) -> tuple[Figure, Axes]:
+    figure = Figure(figsize=(9, 7))
+    axes = figure.subplots()
+    axes.set(title=title, aspect="equal", xlabel="x (m)", ylabel="y (m)")
+    return figure, axes
+
+
+def _framed(figure: Figure, axes: Axes, corners: Floats) -> Figure:
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    axes.set(xlim=(low[0] - 0.3, high[0] + 0.3), ylim=(low[1] - 0.3, high[1] + 0.3))
+    _legend([axes])
+    return figure
+
+
+def _legend(panels: list[Axes]) -> None:
+    """One legend for all panels, beside the last one, where it hides nothing."""
+    named = {label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
+    if named:
+        panels[-1].legend(named.values(), named.keys(), loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8)
+
+
+def _views(story: Story) -> list[tuple[View, Floats]]:
+    return [(percept.view, pose) for percept, pose in zip(story.percepts, story.poses, strict=True)]
+
+
+def _raw_ends(fused: FusedScan) -> Floats:
+    """(n, 2) ends of the raw readings; where nothing came back, the sensor's reach or what fusion put there."""
+    ranges = np.where(np.isfinite(fused.raw_ranges), fused.raw_ranges, fused.ranges)
+    bearings = fused.bearings
+    ends = ranges[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)])
+    return transform(ends, np.array(fused.scan.sensor.mount))
+
+
+def _pieces(contour: Contour, kind: EdgeKind) -> Floats:
+    """(e, 2, 2) the contour's edges of one kind."""
+    starts = np.flatnonzero(contour.edge_kinds == kind)
+    return np.stack([contour.points[starts], contour.points[(starts + 1) % len(contour.points)]], axis=1)
+
+
+def _lines(axes: Axes, pieces: Floats, ink: str, *, label: str = "", style: str = "solid", width: float = 1.2) -> None:
+    if len(pieces):
+        lines = LineCollection(list(pieces), colors=ink, linestyles=style, linewidths=width, label=label or None)
+        axes.add_collection(lines)
+
+
+def _patch(shape: Polygon | MultiPolygon, **looks: object) -> PathPatch:
+    rings: Iterable[shapely.LinearRing] = [ring for part in _parts(shape) for ring in (part.exterior, *part.interiors)]
+    return PathPatch(Outline.make_compound_path(*(Outline(np.asarray(r.coords), closed=True) for r in rings)), **looks)
+
+
+def _parts(shape: Polygon | MultiPolygon) -> list[Polygon]:
+    """Polygons with holes against the sense of their shells, as filling demands."""
+    return [part for part in shapely.get_parts(shapely.orient_polygons(shape)) if isinstance(part, Polygon)]
+
+
+def _ellipse(position: Floats, covariance: Floats) -> Ellipse:
+    """The 2-sigma ellipse of a knot."""
+    variances, directions = np.linalg.eigh(covariance)
+    angle = float(np.degrees(np.arctan2(directions[1, 1], directions[0, 1])))
+    width, height = 4 * np.sqrt(np.maximum(variances[::-1], 0.0))
+    return Ellipse((position[0], position[1]), width, height, angle=angle, fill=False, edgecolor=LANDMARK)

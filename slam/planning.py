@@ -1,0 +1,103 @@
+"""Planning on a room: both planners by name, and their answers as plain values."""
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import shapely
+from shapely import MultiPolygon
+
+from frontend.scan import Floats
+from planners import configuration_space, generalized_cones
+from planners.configuration_space import ConfigurationSpaceSettings
+from planners.generalized_cones import ConesSettings
+from planners.path import Answer, Path, PlanningError
+from planners.robot import Robot, parse_robot
+from planners.world import World, WorldError
+
+
+@dataclass(frozen=True)
+class PlanningSettings:
+    """The settings of both planners, and of the drive that merge plans on every new map."""
+
+    cones: ConesSettings = field(default_factory=ConesSettings)
+    configuration_space: ConfigurationSpaceSettings = field(default_factory=ConfigurationSpaceSettings)
+    tour_robot: str = "disc:0.15"  # who goes from the first pose to the farthest; larger fits through fewer doors
+
+
+Planner = Callable[[World, Robot, Floats, Floats, PlanningSettings], Answer]
+
+PLANNERS: dict[str, Planner] = {
+    "cones": lambda world, robot, start, goal, settings: generalized_cones.plan(
+        world, robot, start, goal, settings.cones
+    ),
+    "configuration-space": lambda world, robot, start, goal, settings: configuration_space.plan(
+        world, robot, start, goal, settings.configuration_space
+    ),
+}
+
+
+def tour(safety: MultiPolygon, poses: Floats, settings: PlanningSettings) -> dict[str, Answer]:
+    """Each planner's way from the first of poses (n, 3) to the farthest place of the drive where the robot can stand.
+
+    Headings are free. Raises PlanningError where the robot cannot stand anywhere on the drive.
+    """
+    robot = parse_robot(settings.tour_robot)
+    standable = safety.buffer(-1.01 * robot.reach)
+    fits = shapely.contains_xy(standable, poses[:, 0], poses[:, 1])
+    if not fits.any():
+        raise PlanningError(f"a robot {settings.tour_robot} cannot stand at any of {len(poses)} poses of the drive")
+    places = np.column_stack([poses[fits, :2], np.full(fits.sum(), np.nan)])
+    goal = places[np.argmax(np.linalg.norm(places[:, :2] - places[0, :2], axis=1))]
+    world = World.from_free_space(safety)
+    return {name: planner(world, robot, places[0], goal, settings) for name, planner in PLANNERS.items()}
+
+
+def tour_or_reason(
+    safety: MultiPolygon, poses: Floats, settings: PlanningSettings
+) -> tuple[dict[str, Answer], str | None]:
+    """The tour's answers, or none of them and the reason: a map that nobody can drive on is still a map."""
+    try:
+        return tour(safety, poses, settings), None
+    except (PlanningError, WorldError) as reason:
+        return {}, str(reason)
+
+
+def parse_pose(text: str) -> Floats:
+    """A pose (3,) from "X,Y" or "X,Y,HEADING", metres and radians; without a heading it is nan: any will do."""
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError as damage:
+        raise PlanningError(f"{text!r} is no X,Y[,HEADING]: {damage}") from damage
+    if len(numbers) not in (2, 3) or not np.isfinite(numbers).all():
+        raise PlanningError(f"{text!r} has {len(numbers)} parts, but X,Y or X,Y,HEADING of finite numbers is needed")
+    return np.array([*numbers, np.nan][:3])
+
+
+def path_text(path: Path, planner: str) -> str:
+    """The path as GeoJSON: its line, with heading, length and clearance among the properties."""
+    properties = {
+        "kind": "path",
+        "planner": planner,
+        "length": path.length,
+        "clearance": path.clearance,
+        "headings": path.poses[:, 2].tolist(),
+        "certificate": path.certificate,
+    }
+    line = {"type": "LineString", "coordinates": path.poses[:, :2].tolist()}
+    feature = {"type": "Feature", "properties": properties, "geometry": line}
+    return json.dumps({"type": "FeatureCollection", "features": [feature]}) + "\n"
+
+
+def answer_values(answer: Answer) -> dict[str, Any]:
+    """The answer as JSON holds it: metres, radians, null where there is no path."""
+    path = answer.path
+    return {
+        "answer": answer.kind,
+        "length": None if path is None else path.length,
+        "clearance": None if path is None else path.clearance,
+        "poses": [] if path is None else path.poses.tolist(),
+        "reason": answer.reason,
+    }

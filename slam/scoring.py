@@ -1,0 +1,121 @@
+"""Scoring the result of a run against what is known of the truth: a plan, poses, or relations checked by hand."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import shapely
+from shapely import MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from frontend.rigid_motion import transform
+from frontend.scan import Floats, Scan
+from frontend.sensors.rays import cast
+from frontend.sensors.surfaces import MATERIALS, join_rings
+from slam.map_scores import MapTruth, best_alignment, moved, score_map
+from slam.result_folder import MAP, ODOMETRY, TRAJECTORY, read_report, recording_of
+from slam.room_file import free_space, read_features, read_room
+from slam.trajectory_file import Trajectory, TrajectoryFileError, read_trajectory
+from slam.trajectory_scores import Spread, Track, absolute_errors, read_relations, relation_errors, relative_errors
+
+VISIBLE_RAYS = 3600  # a tenth of a degree
+
+Scores = dict[str, Any]
+
+
+def pose_scores(folder: Path, reference: Path) -> Scores:
+    """Errors in metres and radians after the best rigid alignment, ours and those of the odometry alone."""
+    true, ours, wheels = read_trajectory(reference), _track(folder), _wheels(folder)
+    within = (true.times >= ours.times[0] - 1e-6) & (true.times <= ours.times[-1] + 1e-6)
+    if within.sum() < 2:
+        raise TrajectoryFileError(f"{reference.name}: {within.sum()} poses lie in the time of the run, 2 are needed")
+    times = true.times[within]
+    estimated, dead_reckoned = (np.array([track.at(time) for time in times]) for track in (ours, wheels))
+    positions = true.positions[within]
+    scores: Scores = {
+        "position": asdict(Spread.of(absolute_errors(estimated[:, :2], positions))),
+        "position by odometry alone": asdict(Spread.of(absolute_errors(dead_reckoned[:, :2], positions))),
+    }
+    if true.headings is not None:
+        metres, radians = relative_errors(estimated, true.poses[within])
+        scores |= {"step": asdict(Spread.of(metres)), "turn": asdict(Spread.of(radians))}
+    return scores
+
+
+def relation_scores(folder: Path, relations: Path) -> Scores:
+    """Errors over the relations in metres and radians, ours and those of the odometry alone."""
+    known = read_relations(relations)
+    (metres, radians), (by_wheels, _) = (relation_errors(track, known) for track in (_track(folder), _wheels(folder)))
+    return {
+        "translation": asdict(Spread.of(metres)),
+        "rotation": asdict(Spread.of(radians)),
+        "translation by odometry alone": asdict(Spread.of(by_wheels)),
+    }
+
+
+def map_scores(folder: Path, plan: Path, reference: Path | None) -> Scores:
+    """The map against the plan in the first pose's frame, and again after the best small alignment.
+
+    With true poses only what they could see counts, and the raw readings at our poses are scored beside the map.
+    """
+    report, room = read_report(folder), read_room(folder / MAP)
+    truth = _truth(plan, None if reference is None else read_trajectory(reference), report["recording"]["max_range"])
+    poses = read_trajectory(folder / TRAJECTORY).poses
+    raw = raw_free_space(recording_of(report).scans, poses)
+    return {
+        "map": asdict(score_map(room, truth)),
+        "map aligned": asdict(score_map(moved(room, best_alignment(room, truth)), truth)),
+        "raw boundaries": {"iou": overlap(raw, truth.seen), "false_free": raw.difference(truth.free).area},
+    }
+
+
+def raw_free_space(scans: tuple[Scan, ...], poses: Floats) -> BaseGeometry:
+    """The union of the readings' boundaries as the sensor gave them, at poses (n, 3)."""
+    return shapely.union_all([_raw_boundary(scan, pose) for scan, pose in zip(scans, poses, strict=True)])
+
+
+def visible(free: MultiPolygon, poses: Floats, reach: float) -> BaseGeometry:
+    """The part of free space that a thin beam from poses (n, 3) could see within `reach` metres."""
+    oriented = shapely.orient_polygons(free)
+    rings = [np.asarray(ring.coords)[:-1] for part in oriented.geoms for ring in (part.exterior, *part.interiors)]
+    materials = [[MATERIALS["rough"]] * len(ring) for ring in rings]
+    surfaces = join_rings(rings, materials, [np.full(len(ring), np.inf) for ring in rings])
+    angles = np.linspace(-np.pi, np.pi, VISIBLE_RAYS, endpoint=False)
+    rays = np.column_stack([np.cos(angles), np.sin(angles)])
+    views = [pose[:2] + np.minimum(cast(surfaces, pose[:2], angles)[0], reach)[:, None] * rays for pose in poses]
+    return shapely.union_all([shapely.make_valid(Polygon(view)) for view in views]).intersection(free)
+
+
+def overlap(ours: BaseGeometry, theirs: BaseGeometry) -> float:
+    """Intersection over union."""
+    return float(ours.intersection(theirs).area / ours.union(theirs).area)
+
+
+def _raw_boundary(scan: Scan, pose: Floats) -> BaseGeometry:
+    usable = ~np.isnan(scan.ranges)
+    ranges, bearings = np.minimum(scan.ranges[usable], scan.sensor.max_range), scan.bearings[usable]
+    ends = ranges[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)])
+    ring = ends if scan.full_turn else np.vstack([ends, np.zeros((1, 2))])
+    return shapely.make_valid(Polygon(transform(transform(ring, np.array(scan.sensor.mount)), pose)))
+
+
+def _truth(plan: Path, true: Trajectory | None, reach: float) -> MapTruth:
+    features = read_features(plan)
+    obstacles = tuple(
+        shape for shape, says in features if says.get("kind") == "obstacle" and isinstance(shape, Polygon)
+    )
+    jambs = [shapely.get_coordinates(shape) for shape, says in features if says.get("kind") == "door"]
+    free, _ = free_space(plan, "free")
+    seen = free if true is None else visible(free, true.poses, reach)
+    return MapTruth(free, seen, np.array(jambs).reshape(-1, 2, 2), obstacles)
+
+
+def _track(folder: Path) -> Track:
+    ours, wheels = read_trajectory(folder / TRAJECTORY), read_trajectory(folder / ODOMETRY)
+    return Track(ours.times, ours.poses, wheels.times, wheels.poses)
+
+
+def _wheels(folder: Path) -> Track:
+    wheels = read_trajectory(folder / ODOMETRY)
+    return Track(wheels.times, wheels.poses, wheels.times, wheels.poses)
