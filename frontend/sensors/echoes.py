@@ -65,7 +65,9 @@ def echoes_around(surfaces: Surfaces, place: Floats, transducer: Transducer, rng
     directions, lengths, energies = (np.concatenate(column) for column in zip(*parts, strict=True))
     tall = np.zeros(directions.size, bool)
     tall[: parts[0][0].size + parts[1][0].size] = True
-    return Echoes(directions, lengths, energies * np.exp(-2 * transducer.decay * lengths), tall)
+    sent_back = energies > 0
+    heard = energies * np.exp(-2 * transducer.decay * lengths)
+    return Echoes(directions[sent_back], lengths[sent_back], heard[sent_back], tall[sent_back])
 
 
 _Part = tuple[Floats, Floats, Floats]

@@ -10,7 +10,7 @@ from frontend.sensors.echoes import Echoes, echoes_around
 from frontend.sensors.surfaces import MATERIALS, Surfaces
 from frontend.sensors.transducer import FOOT, INCH, Transducer, pattern_tables
 
-STEP = 0.005  # metres of range per step of the energy detector; the crossing is interpolated within a step
+STEP = 0.001  # metres of range per step of the energy detector: a third of the quantum
 
 # Blanking, reach and resolution are the paper's. The half-beam is a cautious one: what is left of it 3.5 m away (see
 # half_beam_at, which knows the range).

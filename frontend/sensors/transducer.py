@@ -44,7 +44,8 @@ class Transducer:
 
     piston: float = 0.019
     chirp: tuple[tuple[int, float], ...] = ((8, 60e3), (8, 56e3), (16, 52.5e3), (24, 49.41e3))
-    # A 1-inch pole at 3 ft is still heard 40° off the axis: that claim of the paper fixes the threshold.
+    # One constant holds both claims of the paper: a 1-inch pole 2½ ft away is heard 40° off the axis, and plasterboard
+    # 3 ft away is lost where the head is aimed at less than 25° from it.
     threshold: float = 10**-8.6
     celsius: float = 20.0
     assumed_celsius: float = 20.0
