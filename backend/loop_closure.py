@@ -41,22 +41,27 @@ class Drift:
     """The doubt between poses of the graph, as motions and loops are added."""
 
     def __init__(self) -> None:
-        self._ties: dict[tuple[int, int], tuple[float, float]] = {}
+        self._ends = np.empty((0, 2), np.int64)
+        self._variances = np.empty((0, 2))
 
     def add(self, fixed: int, moving: int, covariance: Floats) -> None:
         """Two poses are tied with this covariance (3, 3)."""
-        variances = (float(np.trace(covariance[:2, :2])), float(covariance[2, 2]))
-        tied = self._ties.get((fixed, moving), variances)
-        self._ties[fixed, moving] = (min(tied[0], variances[0]), min(tied[1], variances[1]))
+        variances = np.array([np.trace(covariance[:2, :2]), covariance[2, 2]])
+        tied = np.flatnonzero((self._ends == (fixed, moving)).all(axis=1))
+        if len(tied):
+            self._variances[tied[0]] = np.minimum(self._variances[tied[0]], variances)
+            return
+        self._ends = np.vstack([self._ends, (fixed, moving)])
+        self._variances = np.vstack([self._variances, variances])
 
-    def seen_from(self, newest: int, positions: Floats) -> tuple[Floats, Floats]:
-        """Standard deviations (n,) of place in metres and of heading in radians of every pose against the newest."""
-        ends = np.array(list(self._ties)).reshape(-1, 2)
-        variances = np.array(list(self._ties.values())).reshape(-1, 2)
-        lever = np.sum((positions[ends[:, 1]] - positions[newest]) ** 2, axis=1)
-        count = len(positions)
-        cost = variances[:, 0] + variances[:, 1] * lever
-        return _least_doubt(ends, cost, newest, count), _least_doubt(ends, variances[:, 1], newest, count)
+    def place_from(self, newest: int, positions: Floats) -> Floats:
+        """Standard deviations (n,) in metres of the place of every pose against the newest."""
+        lever = np.sum((positions[self._ends[:, 1]] - positions[newest]) ** 2, axis=1)
+        return _least_doubt(self._ends, self._variances[:, 0] + self._variances[:, 1] * lever, newest, len(positions))
+
+    def heading_from(self, newest: int, count: int) -> Floats:
+        """Standard deviations (n,) in radians of the heading of every pose against the newest."""
+        return _least_doubt(self._ends, self._variances[:, 1], newest, count)
 
 
 def candidates(poses: Floats, drift: Drift, settings: LoopSettings) -> list[Candidate]:
@@ -64,7 +69,7 @@ def candidates(poses: Floats, drift: Drift, settings: LoopSettings) -> list[Cand
     newest = len(poses) - 1
     if newest < settings.skipped:
         return []
-    place, heading = drift.seen_from(newest, poses[:, :2])
+    place = drift.place_from(newest, poses[:, :2])
     ahead = poses[:, :2] + settings.ahead * np.column_stack([np.cos(poses[:, 2]), np.sin(poses[:, 2])])
     gaps = np.linalg.norm(ahead - ahead[-1], axis=1)
     doubts = np.minimum(settings.sigmas * place, settings.widest)
@@ -75,6 +80,9 @@ def candidates(poses: Floats, drift: Drift, settings: LoopSettings) -> list[Cand
             chosen.append(int(pose))
         if len(chosen) == settings.at_once:
             break
+    if not chosen:
+        return []
+    heading = drift.heading_from(newest, len(poses))
     return [Candidate(pose, float(doubts[pose]), float(min(settings.sigmas * heading[pose], 0.6))) for pose in chosen]
 
 

@@ -33,16 +33,23 @@ class MapperSettings:
     keyframe_radians: float = 0.3  # larger keeps fewer keyframes
     mend_metres: float = 0.05  # disagreement of a loop that mends the graph at once; larger mends less often
     mend_radians: float = 0.01
+    loop_metres: float = 0.5  # way between two searches for loops; larger searches less often
+    loop_radians: float = 0.5  # turn between two searches for loops; larger searches less often
 
 
-@dataclass(eq=False)
 class _Keyframe:
     """A scan that carries the graph: its place among the scans, and its faces in the room as now believed."""
 
-    scan: int
-    percept: Percept
-    pose: Floats
-    faces: Faces
+    def __init__(self, scan: int, percept: Percept, pose: Floats) -> None:
+        self.scan, self.percept, self.pose = scan, percept, pose
+        self._placed: tuple[Floats, Faces] | None = None
+
+    @property
+    def faces(self) -> Faces:
+        """Placed only when somebody looks: a mended graph moves every keyframe, but few are looked at again."""
+        if self._placed is None or self._placed[0] is not self.pose:
+            self._placed = (self.pose, Faces.placed(self.percept.surface, self.pose))
+        return self._placed[1]
 
 
 class Mapper:
@@ -61,6 +68,7 @@ class Mapper:
         self._decisions: list[Decision] = []
         self._unsolved = False
         self._slipped = False  # whether the wheels disagreed since the last keyframe
+        self._way = np.zeros(2)  # metres and radians since loops were last searched
 
     def add(self, scan: Scan) -> Floats:
         """Take in the next scan; its pose (3,) in the frame of the first, as now believed."""
@@ -91,7 +99,7 @@ class Mapper:
     def _settle(self) -> None:
         """Move keyframes and landmarks to where the graph now puts them."""
         for keyframe, pose in zip(self._keyframes, self._graph.poses, strict=True):
-            keyframe.pose, keyframe.faces = pose, Faces.placed(keyframe.percept.surface, pose)
+            keyframe.pose = pose
         self._landmarks.positions[self._graph.landmark_indices] = self._graph.landmarks
         self._unsolved = False
 
@@ -124,7 +132,7 @@ class Mapper:
         pose = np.zeros(3)
         self._graph.add_pose(0, pose)
         self._graph.anchor(0, pose, np.diag([1e-3, 1e-3, 1e-4]) ** 2)
-        self._keyframes.append(_Keyframe(0, percept, pose, Faces.placed(percept.surface, pose)))
+        self._keyframes.append(_Keyframe(0, percept, pose))
         self._relative.append((0, pose))
         self._see_landmarks(percept, pose)
 
@@ -161,8 +169,8 @@ class Mapper:
             self._graph.add_motion(new - 1, new, driven.pose, turned(driven.covariance, -driven.pose[2]))
         self._slipped = False
         self._drift.add(new - 1, new, placed.covariance)
-        faces = Faces.placed(percept.surface, placed.pose)
-        self._keyframes.append(_Keyframe(len(self.percepts) - 1, percept, placed.pose, faces))
+        self._keyframes.append(_Keyframe(len(self.percepts) - 1, percept, placed.pose))
+        self._way += np.array([np.hypot(*step[:2]), abs(step[2])])
         self._relative.append((new, np.zeros(3)))
         self._see_landmarks(percept, placed.pose)
         self._unsolved = True
@@ -175,6 +183,9 @@ class Mapper:
 
     def _close_loops(self) -> bool:
         """Try the candidates of the newest keyframe; whether one disagreed enough to mend the graph at once."""
+        if np.all(self._way < (self.settings.loop_metres, self.settings.loop_radians)):
+            return False
+        self._way = np.zeros(2)
         poses = np.array([keyframe.pose for keyframe in self._keyframes])
         surprise = False
         for candidate in candidates(poses, self._drift, self.settings.loops):
