@@ -32,4 +32,4 @@ def ballot_of(ring: Floats, real: NDArray[np.bool_], origin: Floats, depth: floa
         ],
         axis=1,
     )
-    return Ballot(ring / cell, strips.reshape(-1, 2) / cell, 4 * np.arange(1, len(first) + 1, dtype=np.int64))
+    return Ballot(ring / cell, strips.reshape(-1, 2) / cell)

@@ -60,10 +60,8 @@ def _trace(sides, rows, columns, length):  # type: ignore[no-untyped-def]
 
 def assemble(rings: list[Floats]) -> MultiPolygon:
     """Polygons with holes from rings in metres: counter-clockwise ones are outer, clockwise ones are holes."""
-    shapes = [shapely.Polygon(ring) for ring in rings if len(ring) >= 3]
-    outward = np.array([shape.exterior.is_ccw for shape in shapes], dtype=bool)
-    outer = _valid([shape for shape, is_outer in zip(shapes, outward, strict=True) if is_outer])
-    holes = _valid([shape for shape, is_outer in zip(shapes, outward, strict=True) if not is_outer])
+    outer = _valid([ring for ring in rings if len(ring) >= 3 and _signed_area(ring) > 0])
+    holes = _valid([ring for ring in rings if len(ring) >= 3 and _signed_area(ring) < 0])
     if not outer:
         return MultiPolygon()
     tree = shapely.STRtree(outer)
@@ -83,8 +81,14 @@ def as_polygons(shape: BaseGeometry) -> MultiPolygon:
     return MultiPolygon(_polygons(shape))
 
 
-def _valid(shapes: list[Polygon]) -> list[Polygon]:
-    return [part for shape in shapes for part in _polygons(shapely.make_valid(shape))]
+def _signed_area(ring: Floats) -> float:
+    """Area of a ring, positive if it turns counter-clockwise on the whole: a small crossing does not change that."""
+    x, y = (ring - ring[0]).T
+    return float(0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+
+
+def _valid(rings: list[Floats]) -> list[Polygon]:
+    return [part for ring in rings for part in _polygons(shapely.make_valid(Polygon(ring)))]
 
 
 def _polygons(shape: BaseGeometry) -> list[Polygon]:

@@ -33,7 +33,10 @@ class DoorSettings:
 
 @dataclass(frozen=True, eq=False)
 class Opening:
-    """Sightings of openings: jambs (o, 2, 2), weight (o,) of each, view (o,) that reported it (−1: the fused map)."""
+    """Sightings of openings: jambs (o, 2, 2), and of each a weight (o,), a whole number.
+
+    view: (o,) that reported it, −1 for the fused map.
+    """
 
     jambs: Floats
     weight: Floats
@@ -45,7 +48,7 @@ def doors_of(walls: MultiPolygon, reported: Opening, sight: Sight, settings: Doo
 
     `walls` is the free space with the objects in it filled, so that gaps between furniture are no doors.
     """
-    facing = facing_jambs(walls, settings)
+    facing, reported = facing_jambs(walls, settings), _door_wide(reported, settings)
     seen = Opening(
         np.concatenate([facing.jambs, reported.jambs]),
         np.concatenate([facing.weight, reported.weight]),
@@ -54,6 +57,13 @@ def doors_of(walls: MultiPolygon, reported: Opening, sight: Sight, settings: Doo
     groups = [_narrowest(seen, group) for group in _grouped(seen.jambs, settings.apart)]
     merged = sorted((_merged(seen, group, sight) for group in groups), key=lambda door: tuple(door[0].mean(axis=0)))
     return tuple(Door(f"door {i + 1}", jambs, sure, views) for i, (jambs, sure, views) in enumerate(merged))
+
+
+def _door_wide(reported: Opening, settings: DoorSettings) -> Opening:
+    """The reported openings that are as wide as a door."""
+    width = np.linalg.norm(reported.jambs[:, 1] - reported.jambs[:, 0], axis=1)
+    fits = (width >= settings.narrowest) & (width <= settings.widest)
+    return Opening(reported.jambs[fits], reported.weight[fits], reported.view[fits])
 
 
 def facing_jambs(free: MultiPolygon, settings: DoorSettings) -> Opening:
@@ -155,9 +165,9 @@ def _merged(seen: Opening, group: Ints, sight: Sight) -> tuple[Floats, float, In
     reference = jambs[int(np.argmax(weight)), 1] - jambs[int(np.argmax(weight)), 0]
     turned = np.sum((jambs[:, 1] - jambs[:, 0]) * reference, axis=1) < 0
     jambs = np.where(turned[:, None, None], jambs[:, ::-1], jambs)
-    mean = np.average(jambs, axis=0, weights=weight)
-    _, through = sight.pairs(mean.mean(axis=0)[None])
+    middle = np.median(np.repeat(jambs, weight.astype(np.int64), axis=0), axis=0)
+    _, through = sight.pairs(middle.mean(axis=0)[None])
     reported = seen.view[group][seen.view[group] >= 0]
     views = np.unique(np.concatenate([through, reported]))
     evidence = weight.max() + len(reported) + min(len(through), 4) / 2
-    return mean, float(evidence / (evidence + 1)), views
+    return middle, float(evidence / (evidence + 1)), views

@@ -19,13 +19,11 @@ TILE = 128  # cells along the side of one tile
 class Ballot:
     """What one placed view votes: closed rings stacked on each other, in cells.
 
-    free: (m, 2) ring of the free polygon. walls: (w, 2) corners of the strips behind real edges;
-    ends: (s,) where each strip's ring ends in `walls`.
+    free: (m, 2) ring of the free polygon. walls: (4 s, 2) corners of the convex strips behind real edges, four each.
     """
 
     free: Floats
     walls: Floats
-    ends: Ints
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +63,7 @@ class EvidenceGrid:
         """Add (sign 1) or take back (sign −1) the votes of one view."""
         corners = np.vstack([ballot.free, ballot.walls])
         self._reach(np.floor(corners.min(axis=0)).astype(np.int64), np.ceil(corners.max(axis=0)).astype(np.int64))
-        ends = np.concatenate([[len(ballot.free)], len(ballot.free) + ballot.ends]).astype(np.int64)
+        ends = len(ballot.free) + np.arange(0, len(ballot.walls) + 1, 4)
         _vote(corners, ends, (self._tiles, self._first_tile), self._votes, sign)
 
     def counts(self) -> Counts:
@@ -101,19 +99,15 @@ class EvidenceGrid:
 
 @njit(cache=True)
 def _vote(corners, ends, ground, votes, sign):  # type: ignore[no-untyped-def]
-    """Fill ring 0 into the free votes and every other ring into the wall votes."""
-    start = 0
-    for ring in range(len(ends)):
-        layer = 0 if ring == 0 else 1
-        if ends[ring] - start > 2:
-            _fill(corners[start : ends[ring]], ground, votes[:, layer], sign)
-        start = ends[ring]
+    """Fill ring 0 into the free votes and every other ring, of four corners, into the wall votes."""
+    _fill(corners[: ends[0]], ground, votes[:, 0], sign)
+    for ring in range(1, len(ends)):
+        _fill_strip(corners[ends[ring - 1] : ends[ring]], ground, votes[:, 1], sign)
 
 
 @njit(cache=True)
 def _fill(ring, ground, votes, sign):  # type: ignore[no-untyped-def]
     """Even-odd scan conversion: a cell belongs to the ring if its centre does."""
-    tiles, first_tile = ground
     low = int(np.ceil(ring[:, 1].min() - 0.5))
     high = int(np.ceil(ring[:, 1].max() - 0.5))  # rows low … high − 1 have their centre line inside
     if high <= low:
@@ -121,11 +115,40 @@ def _fill(ring, ground, votes, sign):  # type: ignore[no-untyped-def]
     crossings, starts = _crossings(ring, low, high)
     for row in range(low, high):
         line = np.sort(crossings[starts[row - low] : starts[row - low + 1]])
-        tile_row, in_row = row // 128 - first_tile[1], row % 128
         for pair in range(0, len(line) - 1, 2):
-            for column in range(int(np.ceil(line[pair] - 0.5)), int(np.ceil(line[pair + 1] - 0.5))):
-                tile = tiles[tile_row, column // 128 - first_tile[0]]
-                votes[tile, in_row, column % 128] += sign
+            _fill_row(row, line[pair], line[pair + 1], ground, votes, sign)
+
+
+@njit(cache=True)
+def _fill_strip(strip, ground, votes, sign):  # type: ignore[no-untyped-def]
+    """The same for four corners, without any list."""
+    low = int(np.ceil(strip[:, 1].min() - 0.5))
+    high = int(np.ceil(strip[:, 1].max() - 0.5))
+    for row in range(low, high):
+        left, right = np.inf, -np.inf
+        for i in range(4):
+            x0, y0 = strip[i]
+            x1, y1 = strip[(i + 1) % 4]
+            if (y0 <= row + 0.5) != (y1 <= row + 0.5):
+                x = x0 + (row + 0.5 - y0) * (x1 - x0) / (y1 - y0)
+                left, right = min(left, x), max(right, x)
+        if left < right:
+            _fill_row(row, left, right, ground, votes, sign)
+
+
+@njit(cache=True)
+def _fill_row(row, left, right, ground, votes, sign):  # type: ignore[no-untyped-def]
+    """Vote in the cells of one row whose centres lie between `left` and `right`, tile by tile."""
+    tiles, first_tile = ground
+    tile_row, in_row = row // TILE - first_tile[1], row % TILE
+    column, last = int(np.ceil(left - 0.5)), int(np.ceil(right - 0.5))
+    while column < last:
+        end = min(last, (column // TILE + 1) * TILE)
+        cells = votes[tiles[tile_row, column // TILE - first_tile[0]], in_row]
+        start = column % TILE
+        for cell in range(start, start + end - column):
+            cells[cell] += sign
+        column = end
 
 
 @njit(cache=True)

@@ -28,6 +28,7 @@ class ObjectSettings:
     longest: float = 1.5  # metres; larger lets longer thin things pass as objects
     real_share: float = 0.3  # larger asks for more seen surface before an object counts as measured
     pocket: float = 0.30  # metres; larger infers objects from wider notches in the boundary
+    least_pocket: float = 0.04  # m²; larger infers only bigger objects from notches
 
 
 def without_slivers(free: MultiPolygon, surface: Floats, reach: float, settings: ObjectSettings) -> MultiPolygon:
@@ -76,11 +77,13 @@ def _judged(thing: Polygon, around: list[MapEdge], settings: ObjectSettings) -> 
 
 
 def _pockets(free: MultiPolygon, settings: ObjectSettings) -> list[Polygon]:
-    """Notches of the outer boundary, narrower than twice the pocket width, at least one tenth of it deep and wide."""
+    """Notches of the outer boundary, narrower than twice the pocket width, and a third of it thick somewhere."""
     radius = settings.pocket
     solid = shapely.union_all([Polygon(part.exterior) for part in free.geoms])
     notches = solid.buffer(radius, join_style="mitre").buffer(-radius, join_style="mitre").difference(solid)
-    notches = notches.buffer(-0.1 * radius, join_style="mitre").buffer(0.1 * radius, join_style="mitre")
+    notches = notches.buffer(-radius / 6, join_style="mitre").buffer(radius / 6, join_style="mitre")
     return [
-        notch for notch in shapely.get_parts(notches) if isinstance(notch, Polygon) and notch.area > settings.sliver
+        notch
+        for notch in shapely.get_parts(notches)
+        if isinstance(notch, Polygon) and notch.area > settings.least_pocket
     ]

@@ -26,6 +26,8 @@ def boundary_edges(free: MultiPolygon) -> Floats:
 
 def label_edges(edges: Floats, samples: Samples, counts: Counts, reach: float) -> tuple[MapEdge, ...]:
     """Every edge (e, 2, 2) with its support by samples within `reach` metres that face the same side."""
+    if not len(edges):
+        return ()
     along = edges[:, 1] - edges[:, 0]
     length = np.maximum(np.linalg.norm(along, axis=1), 1e-9)
     inward = np.stack([-along[:, 1], along[:, 0]], axis=1) / length[:, None]
@@ -76,4 +78,4 @@ def _seen_through(edges: Floats, inward: Floats, counts: Counts, depth: float) -
     share = np.array([0.1, 0.3, 0.5, 0.7, 0.9])[None, :, None]
     points = edges[:, None, 0] * (1 - share) + edges[:, None, 1] * share - depth * inward[:, None]
     free, _ = counts.at(points.reshape(-1, 2))
-    return np.median(free.reshape(-1, 5), axis=1).astype(np.int64) if len(edges) else np.empty(0, dtype=np.int64)
+    return np.asarray(np.median(free.reshape(-1, 5), axis=1).astype(np.int64))

@@ -9,7 +9,7 @@ from shapely import Point, Polygon, box
 from shapely.affinity import rotate
 
 from backend.contours import as_polygons
-from backend.view import EdgeKind, View, place
+from backend.view import EdgeKind, View
 
 Floats = NDArray[np.float64]
 WALL = 0.10

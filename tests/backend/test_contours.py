@@ -43,3 +43,11 @@ def test_an_empty_mask_has_no_rings() -> None:
 def test_lines_and_points_are_left_out_of_polygons() -> None:
     mixed = shapely.GeometryCollection([Polygon(box(0, 0, 1, 1)), shapely.LineString([(0, 0), (5, 5)])])
     assert as_polygons(mixed).equals(MultiPolygon([box(0, 0, 1, 1)]))
+
+
+def test_a_ring_that_crosses_itself_a_little_is_still_outer() -> None:
+    ring = np.array(
+        [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.0, 4.0], [2.001, 3.999], [1.999, 3.999], [2.0, 4.001], [0.0, 4.0]]
+    )
+    for start in range(len(ring)):
+        assert abs(assemble([np.roll(ring, start, axis=0)]).area - 16) < 0.01

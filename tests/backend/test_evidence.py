@@ -9,7 +9,7 @@ from shapely import Polygon
 
 from backend.evidence import TILE, Ballot, EvidenceGrid
 
-NO_WALLS = (np.empty((0, 2)), np.empty(0, dtype=np.int64))
+NO_WALLS = np.empty((0, 2))
 
 
 def star(seed: int, spread: float = 200.0) -> Ballot:
@@ -19,8 +19,8 @@ def star(seed: int, spread: float = 200.0) -> Ballot:
     radius = rng.uniform(20, 90, 24)[:, None]
     beams = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     ring = radius * beams + rng.uniform(-spread, spread, 2)
-    strip = np.vstack([ring[:3], (ring + 3 * beams)[2::-1]])
-    return Ballot(ring, strip, np.array([6]))
+    strip = np.vstack([ring[:2], (ring + 3 * beams)[1::-1]])
+    return Ballot(ring, strip)
 
 
 def centres_inside(ring: NDArray[np.float64]) -> int:
@@ -57,7 +57,7 @@ def test_tiles_are_made_only_where_views_reach() -> None:
     grid = EvidenceGrid(0.025)
     for corner in (0.0, 40.0 * TILE):
         ring = corner + np.array([[1.0, 1.0], [50.0, 1.0], [50.0, 50.0], [1.0, 50.0]])
-        grid.cast(Ballot(ring, *NO_WALLS), 1)
+        grid.cast(Ballot(ring, NO_WALLS), 1)
     assert grid.bytes < 10 * TILE * TILE * 4 + 41 * 41 * 8
 
 

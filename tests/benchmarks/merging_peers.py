@@ -50,7 +50,7 @@ def symmetric_vote(views: list[View], poses: Floats) -> MultiPolygon:
         length = np.linalg.norm(beam, axis=1, keepdims=True)
         nearer = origin + beam * np.maximum(1 - 0.5 * BAND / np.maximum(length, 1e-9), 0.0)
         band = ballot_of(nearer, view.edges == EdgeKind.REAL, origin, BAND, CELL)
-        ballots.append(Ballot(band.free, band.walls, band.ends))
+        ballots.append(Ballot(ring / CELL, band.walls))
     counts = _counts(ballots)
     return _polygons(counts.free > counts.wall, counts)
 
@@ -69,7 +69,7 @@ def _union(shapes: list[BaseGeometry]) -> MultiPolygon:
 
 
 def _rings(view: View, pose: Floats) -> Ballot:
-    return Ballot(place(view.boundary, pose) / CELL, np.empty((0, 2)), np.empty(0, dtype=np.int64))
+    return Ballot(place(view.boundary, pose) / CELL, np.empty((0, 2)))
 
 
 def _counts(ballots: list[Ballot]) -> Counts:
