@@ -127,7 +127,7 @@ def spines(pairs: Ints, ends: Floats, lines: Floats, width: float, share: float)
         cuts = _cuts(spine, ends)
         for run in range(cuts.size - 1):
             low, high = max(cuts[run], spine[4]), min(cuts[run + 1], spine[5])
-            begin, stop = max(cuts[run], low - widest), min(cuts[run + 1], high + widest)
+            begin, stop = cuts[run], cuts[run + 1]
             if low >= high or stop - begin < width / 2:
                 continue
             middle = (low + high) / 2

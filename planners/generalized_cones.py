@@ -14,10 +14,10 @@ from planners.headings import Arc, least_turning
 from planners.path import Answer, Cone, Path
 from planners.poses import Pose, standing
 from planners.robot import Robot
-from planners.slices import Slices, sliced
+from planners.slices import Body, Slices, slices_of
 from planners.spine_graph import SpineGraph, graph_of
 from planners.spine_search import Route, route
-from planners.way_in import Body, Chain, common, departures, entrances, way
+from planners.way_in import Chain, common, departures, entrances, way
 from planners.world import World
 
 Floats = NDArray[np.float64]
@@ -28,9 +28,7 @@ class ConesSettings:
     """Opinions of the generalized-cones planner."""
 
     slice_length: float = 0.5  # in widths of the robot; larger is faster to prepare and loses orientations
-    crowding: float = (
-        0.4  # a cone needs a place where no wall is nearer than this share of its own; larger: fewer cones
-    )
+    crowding: float = 0.2  # a cone needs a place where no wall is nearer than this share of its own; larger: fewer
     entrances: int = 16  # spines tried from start and goal; larger finds more and asks more time of every query
 
 
@@ -58,11 +56,8 @@ def prepare(world: World, robot: Robot, settings: ConesSettings) -> Cones:
     lines = np.column_stack([world.normals, world.offsets])
     pairs = facing_pairs(body.ends, world.normals, world.offsets)
     runs = _distinct(spines(pairs, body.ends, lines, robot.width, settings.crowding), world.grid)
-    extent = np.array([robot.radius, world.grid, robot.reach + world.grid])
-    pieces, legal, counts, sizes = sliced(runs, body.ends, body.polar, extent, body.step)
-    first = np.concatenate([[0], np.cumsum(sizes[sizes > 0])]).astype(np.int64)
-    slices = Slices(first, pieces, legal, counts)
-    return Cones(world, robot, settings, body, runs[sizes > 0], slices, graph_of(slices))
+    slices, kept = slices_of(runs, body)
+    return Cones(world, robot, settings, body, runs[kept], slices, graph_of(slices))
 
 
 def query(cones: Cones, start: Pose, goal: Pose) -> Answer:
@@ -80,7 +75,8 @@ def _body(world: World, robot: Robot, settings: ConesSettings) -> Body:
     corners = robot.corners
     polar = np.column_stack([np.hypot(corners[:, 0], corners[:, 1]), np.arctan2(corners[:, 1], corners[:, 0])])
     ends = world.edges.reshape(-1, 4).copy()
-    return Body(polar, robot.radius, ends, world.grid, settings.slice_length * robot.width)
+    reach, step = robot.reach + world.grid, settings.slice_length * robot.width
+    return Body(polar, robot.radius, ends, world.grid, reach, step)
 
 
 def _distinct(runs: Floats, grid: float) -> Floats:

@@ -6,35 +6,49 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planners.compiled import compiled
-from planners.orientations import CIRCLE, legal_along
+from planners.orientations import legal_along
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
-INTERVALS = 6  # kept per slice, the widest that the search needs are rarely more than two
+INTERVALS = 6  # kept per slice; the rest is given up, which is sound
+HALVINGS = 4  # of a slice without legal headings, to find where it loses them
 
 
 class Slices(NamedTuple):
     """The slices of all cones, one cone after another.
 
     first (k + 1,): rows of cone k are first[k] to first[k + 1]. pieces (n, 4): both ends of a slice on the spine.
-    legal (n, INTERVALS, 2) and counts (n,): its legal headings. reason, see `lost`: −1 where some heading is legal.
+    legal (n, INTERVALS, 2) and counts (n,): its legal headings, never none. places (n,): twice the cone's number plus
+    where the slice begins on the spine, 0 … 1; increasing.
     """
 
     first: NDArray[np.int64]
     pieces: Floats
     legal: Floats
     counts: Ints
+    places: Floats
+
+
+class Body(NamedTuple):
+    """A robot among walls. polar (v, 2): distance and angle of its corners; radius it is rounded by; ends (m, 4) of
+    the walls; margin to keep from them; reach of the robot with the margin; step: length of a slice."""
+
+    polar: Floats
+    radius: float
+    ends: Floats
+    margin: float
+    reach: float
+    step: float
 
 
 @compiled
 def _near(spine: Floats, ends: Floats, reach: float) -> Floats:
-    """The walls (k, 4) that come within `reach` of the box... of a spine's line."""
+    """The walls (k, 4) that come within `reach` of a spine, measured along and across it."""
     x, y = spine[2] - spine[0], spine[3] - spine[1]
     length = np.hypot(x, y)
     x, y = x / length, y / length
-    kept = np.empty((ends.shape[0], 4))
-    count = 0
+    kept, count = np.empty_like(ends), 0
     for k in range(ends.shape[0]):
         first = x * (ends[k, 1] - spine[1]) - y * (ends[k, 0] - spine[0])
         second = x * (ends[k, 3] - spine[1]) - y * (ends[k, 2] - spine[0])
@@ -51,44 +65,87 @@ def _near(spine: Floats, ends: Floats, reach: float) -> Floats:
 
 
 @compiled
-def sliced(spines: Floats, ends: Floats, polar: Floats, body: Floats, step: float) -> tuple[Floats, Floats, Ints, Ints]:
-    """Slice every spine (k, 8) where some heading is legal.
+def _part(spine: Floats, begin: float, end: float) -> Floats:
+    """The piece (4,) of a spine between two places 0 … 1."""
+    piece = np.empty(4)
+    for axis in range(2):
+        rise = spine[2 + axis] - spine[axis]
+        piece[axis], piece[2 + axis] = spine[axis] + rise * begin, spine[axis] + rise * end
+    return piece
 
-    body: (3,) radius, margin and reach of the robot. Returns pieces, legal, counts as in `Slices`, and the number of
-    slices per spine; only the stretch of legal slices that touches the overlap of the two walls is kept.
+
+@compiled
+def _seed(spine: Floats, near: Floats, body: Body, whole: float) -> tuple[float, float]:
+    """Place and width of a slice with legal headings on the overlap of a spine's two walls; width 0 without."""
+    length = np.hypot(spine[2] - spine[0], spine[3] - spine[1])
+    low, high = spine[6] / length, spine[7] / length
+    tries = int(np.ceil((high - low) / whole))
+    for each in range(tries):
+        place, width = low + (high - low) * (each + 0.5) / tries, whole
+        for _ in range(HALVINGS + 1):
+            begin, end = max(place - width / 2, 0.0), min(place + width / 2, 1.0)
+            if legal_along(body.polar, body.radius, _part(spine, begin, end), near, body.margin).shape[0] > 0:
+                return begin, end - begin
+            width /= 2
+    return 0.0, 0.0
+
+
+@compiled
+def _grown(spine: Floats, near: Floats, body: Body) -> tuple[Floats, Floats]:
+    """Places (n, 2) and legal headings (n, INTERVALS, 2), padded with nan, of the slices around the overlap.
+
+    Slices are added on both sides until none has legal headings; there shorter ones are tried.
     """
-    capacity = 1024
-    pieces, legal = np.empty((capacity, 4)), np.empty((capacity, INTERVALS, 2))
-    counts, sizes = np.empty(capacity, np.int32), np.zeros(spines.shape[0], np.int32)
-    used = 0
-    for k in range(spines.shape[0]):
-        spine = spines[k]
-        near = _near(spine, ends, body[2])
-        length = np.hypot(spine[2] - spine[0], spine[3] - spine[1])
-        total = int(np.ceil(length / step))
-        while used + total > pieces.shape[0]:
-            pieces = np.concatenate((pieces, np.empty_like(pieces)))
-            legal = np.concatenate((legal, np.empty_like(legal)))
-            counts = np.concatenate((counts, np.empty_like(counts)))
-        begin, touched = used, False
-        for each in range(total):
-            for axis in range(2):
-                rise = spine[2 + axis] - spine[axis]
-                pieces[used, axis] = spine[axis] + rise * each / total
-                pieces[used, 2 + axis] = spine[axis] + rise * (each + 1) / total
-            found = legal_along(polar, body[0], pieces[used], near, body[1])
+    whole = body.step / np.hypot(spine[2] - spine[0], spine[3] - spine[1])
+    places, legal, count = np.empty((64, 2)), np.full((64, INTERVALS, 2), np.nan), 0
+    seed, first = _seed(spine, near, body, whole)
+    for side in range(2 if first > 0 else 0):
+        front, width = seed, first if side == 0 else whole
+        while width > whole / 2 ** (HALVINGS + 1) and (front < 1.0 if side == 0 else front > 0.0):
+            begin, end = (front, min(front + width, 1.0)) if side == 0 else (max(front - width, 0.0), front)
+            found = legal_along(body.polar, body.radius, _part(spine, begin, end), near, body.margin)
             if found.shape[0] == 0:
-                if touched:
-                    break
-                used = begin
+                width /= 2
                 continue
-            counts[used] = min(found.shape[0], INTERVALS)
-            for one in range(counts[used]):
-                legal[used, one, 0], legal[used, one, 1] = found[one, 0], found[one, 1]
-            here, there = each * length / total, (each + 1) * length / total
-            touched = touched or (here <= spine[7] and there >= spine[6])
+            if count == places.shape[0]:
+                places, legal = np.concatenate((places, places)), np.concatenate((legal, np.full_like(legal, np.nan)))
+            places[count, 0], places[count, 1] = begin, end
+            for k in range(min(found.shape[0], INTERVALS)):
+                legal[count, k, 0], legal[count, k, 1] = found[k, 0], found[k, 1]
+            front, width, count = end if side == 0 else begin, min(2 * width, whole), count + 1
+    order = np.argsort(places[:count, 0])
+    return places[order], legal[order]
+
+
+@compiled
+def sliced(spines: Floats, body: Body) -> tuple[Ints, Floats, Floats]:
+    """Slices per spine (k,), their pieces (n, 4) and legal headings (n, INTERVALS, 2).
+
+    spines: rows (k, 8) of `freeways.spines`.
+    """
+    pieces, legal, used = np.empty((1024, 4)), np.empty((1024, INTERVALS, 2)), 0
+    sizes = np.zeros(spines.shape[0], np.int32)
+    for k in range(spines.shape[0]):
+        places, headings = _grown(spines[k], _near(spines[k], body.ends, body.reach), body)
+        while used + places.shape[0] > pieces.shape[0]:
+            pieces, legal = np.concatenate((pieces, pieces)), np.concatenate((legal, legal))
+        for row in range(places.shape[0]):
+            piece = _part(spines[k], places[row, 0], places[row, 1])
+            for each in range(4):
+                pieces[used, each] = piece[each]
+            for each in range(INTERVALS):
+                legal[used, each, 0], legal[used, each, 1] = headings[row, each, 0], headings[row, each, 1]
             used += 1
-        if not touched:
-            used = begin
-        sizes[k] = used - begin
-    return pieces[:used].copy(), legal[:used].copy(), counts[:used].copy(), sizes
+        sizes[k] = places.shape[0]
+    return sizes, pieces[:used].copy(), legal[:used].copy()
+
+
+def slices_of(spines: Floats, body: Body) -> tuple[Slices, NDArray[np.bool_]]:
+    """The slices of all `spines` (k, 8), and which of them (k,) kept any."""
+    sizes, pieces, legal = sliced(spines, body)
+    first = np.concatenate([[0], np.cumsum(sizes[sizes > 0])]).astype(np.int64)
+    counts = np.isfinite(legal[:, :, 0]).sum(axis=1).astype(np.int32)
+    owner = np.repeat(np.arange(len(first) - 1), np.diff(first))
+    begin, end = pieces[first[:-1], :2], pieces[first[1:] - 1, 2:]
+    along = np.linalg.norm(pieces[:, :2] - begin[owner], axis=1) / np.linalg.norm(end - begin, axis=1)[owner]
+    return Slices(first, pieces, legal, counts, 2 * owner + along), sizes > 0

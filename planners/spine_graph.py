@@ -130,6 +130,12 @@ def _turns(twins: Ints, nodes: tuple[Ints, Floats, Ints]) -> Floats:
     return rows[:count].copy()
 
 
+def rows_at(slices: Slices, cones: NDArray[np.int64], places: Floats) -> NDArray[np.int64]:
+    """The slices (n,) that hold `places` (n,), 0 … 1, on the spines of `cones` (n,)."""
+    rows = np.searchsorted(slices.places, 2 * cones + places, side="right") - 1
+    return np.asarray(np.clip(rows, slices.first[cones], slices.first[cones + 1] - 1))
+
+
 def graph_of(slices: Slices) -> SpineGraph:
     """All crossings of the cones' spines, and what joins them."""
     sizes = np.diff(slices.first)
@@ -137,7 +143,7 @@ def graph_of(slices: Slices) -> SpineGraph:
     met = crossings(spines)
     cones = np.concatenate([met[:, 0], met[:, 1]]).astype(np.int64)
     places = np.concatenate([met[:, 2], met[:, 3]])
-    rows = slices.first[cones] + np.minimum((places * sizes[cones]).astype(np.int64), sizes[cones] - 1)
+    rows = rows_at(slices, cones, places)
     order = np.lexsort((places, cones))
     rank = np.empty(len(order), np.int32)
     rank[order] = np.arange(len(order), dtype=np.int32)

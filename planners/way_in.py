@@ -10,21 +10,10 @@ from planners.circular import joined, shared
 from planners.compiled import compiled
 from planners.headings import Arc
 from planners.orientations import intersected, legal_along
-from planners.slices import Slices
-from planners.spine_graph import SpineGraph, run_between
+from planners.slices import Body, Slices
+from planners.spine_graph import SpineGraph, rows_at, run_between
 
 Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class Body:
-    """The robot and the walls for `legal_along`. polar (v, 2), radius, ends (m, 4), margin; step: length of a slice."""
-
-    polar: Floats
-    radius: float
-    ends: Floats
-    margin: float
-    step: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,9 +35,9 @@ class Chain:
 
 
 @compiled
-def _way(polar: Floats, radius: float, piece: Floats, ends: Floats, cut: Floats) -> tuple[Floats, Floats, Floats]:
-    """Legal arcs all along a piece (4,), on its first and on its last slice. cut: (2,) margin and longest slice."""
-    total = max(1, int(np.ceil(np.hypot(piece[2] - piece[0], piece[3] - piece[1]) / cut[1])))
+def _way(body: Body, piece: Floats) -> tuple[Floats, Floats, Floats]:
+    """Legal arcs all along a piece (4,), on its first and on its last slice."""
+    total = max(1, int(np.ceil(np.hypot(piece[2] - piece[0], piece[3] - piece[1]) / body.step)))
     part = np.empty(4)
     everywhere = first = last = np.empty((0, 2))
     for each in range(total):
@@ -56,7 +45,7 @@ def _way(polar: Floats, radius: float, piece: Floats, ends: Floats, cut: Floats)
             rise = piece[2 + axis] - piece[axis]
             part[axis] = piece[axis] + rise * each / total
             part[2 + axis] = piece[axis] + rise * (each + 1) / total
-        last = legal_along(polar, radius, part, ends, cut[0])
+        last = legal_along(body.polar, body.radius, part, body.ends, body.margin)
         everywhere = last if each == 0 else intersected(everywhere, last)
         if each == 0:
             first = last
@@ -67,8 +56,7 @@ def _way(polar: Floats, radius: float, piece: Floats, ends: Floats, cut: Floats)
 
 def way(body: Body, begin: Floats, end: Floats) -> tuple[Floats, Floats, Floats]:
     """Legal arcs all along the straight piece between two points, on its first and on its last slice."""
-    cut = np.array([body.margin, body.step])
-    return _way(body.polar, body.radius, np.concatenate([begin, end]), body.ends, cut)
+    return _way(body, np.concatenate([begin, end]))
 
 
 def common(first: Floats, second: Floats) -> Iterator[tuple[Arc, Arc, Arc]]:
@@ -111,8 +99,7 @@ def entrances(body: Body, slices: Slices, graph: SpineGraph, pose: Floats, most:
     """Nodes that a pose (3,) reaches, with the way, by the `most` nearest spines."""
     feet, places, distances = _feet(slices, pose[:2])
     for cone in np.argsort(distances)[:most]:
-        size = slices.first[cone + 1] - slices.first[cone]
-        row = slices.first[cone] + min(int(places[cone] * size), size - 1)
+        row = int(rows_at(slices, np.array([cone]), places[[cone]])[0])
         stops = np.arange(graph.first_stop[cone], graph.first_stop[cone + 1])
         after = stops[graph.stops[stops, 1] >= places[cone]][:1]
         before = stops[graph.stops[stops, 1] < places[cone]][-1:]
