@@ -1,0 +1,22 @@
+"""Claims about samples of many views."""
+
+import numpy as np
+
+from tests.backend.placed_samples import joined, wall_samples
+
+
+def test_placing_moves_points_and_only_turns_normals() -> None:
+    samples = wall_samples(np.zeros(2), np.array([1.0, 0.0]), 2, 0.0, np.random.default_rng(0))
+    placed = samples.placed(np.array([[1.0, 2.0, np.pi / 2], [0.0, 0.0, 0.0]]))
+    first = placed.where(placed.view == 0)
+    np.testing.assert_allclose(first.points[:, 0], 1.0, atol=1e-12)
+    np.testing.assert_allclose(first.normals, np.tile([-1.0, 0.0], (len(first.view), 1)), atol=1e-12)
+    np.testing.assert_allclose(placed.points[placed.view == 1], samples.points[samples.view == 1])
+
+
+def test_choosing_keeps_all_fields_in_step() -> None:
+    rng = np.random.default_rng(1)
+    two = joined(*(wall_samples(np.zeros(2), np.array([x, 0.0]), 1, 0.01, rng) for x in (1.0, 2.0)))
+    far = two.where(two.points[:, 0] > 1.0)
+    assert len(far.view) == len(far.points) == len(far.normals) == len(far.sigma) == len(far.weight) == len(far.sure)
+    assert far.points[:, 0].min() > 1.0
