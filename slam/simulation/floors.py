@@ -36,7 +36,7 @@ def plan_of(name: str, description: str, features: Sequence[Plan]) -> Plan:
 
 def write_plan(plan: Plan, path: Path) -> None:
     """Write a plan file, one feature a line, to a temporary name first."""
-    head = {key: value for key, value in plan.items() if key != "features"}
+    head = {"type": "FeatureCollection"} | {key: value for key, value in plan.items() if key != "features"}
     features = ",\n".join(json.dumps(part) for part in plan["features"])
     making = path.with_name(f".{path.name}")
     making.write_text(f'{json.dumps(head)[:-1]}, "features": [\n{features}\n]}}\n')

@@ -40,9 +40,9 @@ def closet_door() -> Plan:
         "A robot 1.5 ft from a folding closet door whose slats mirror the sound down to the floor",
         [
             *_basement_walls({}, (-8, -0.5, 27, 21)),
-            _closet_door((10.5, 8.0), -135, "slatted"),
+            _closet_door((9.5, 7.5), 0, "slatted"),
             _closet_door((3.5, 3.0), 45, "slatted"),
-            drive_along(np.array([(10.5, 5.086), (10.5, 4.086)]) * FOOT, headings=[AHEAD, AHEAD]),
+            drive_along(np.array([(10.5, 6.0), (10.5, 5.0)]) * FOOT, headings=[AHEAD, AHEAD]),
         ],
     )
 

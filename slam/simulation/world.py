@@ -173,6 +173,8 @@ def _free_space(solids: list[Solid], drive: Drive | None) -> Polygon:
     holding = [part for part in parts if part.contains(start)]
     if not holding:
         raise PlanError(f"the drive starts at {start.x:g}, {start.y:g}, which is not in the enclosed free space")
+    if not holding[0].covers(LineString(drive.waypoints)):
+        raise PlanError("the drive passes through a wall or an obstacle")
     return holding[0]
 
 

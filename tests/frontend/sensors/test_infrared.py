@@ -47,7 +47,7 @@ def test_firing_stops_at_the_first_led_that_is_answered() -> None:
 def test_the_edge_of_a_doorway_is_found_within_one_bearing_of_256() -> None:
     step = 2 * np.pi / 256
     jamb = 15 * INCH
-    bearings = np.arange(-20, 21) * step + 0.3 * step
+    bearings = np.linspace(-20.0, 20.0, 41) * step + 0.3 * step
     room = surfaces_of(block(6 * FOOT, jamb, 6 * FOOT + 0.1, 5), block(6 * FOOT, -5, 6 * FOOT + 0.1, -jamb))
     felt = infrared_codes(room, np.zeros(3), bearings, InfraredDetector(), np.random.default_rng(3)) % 10 > 0
     edges = bearings[:-1][np.diff(felt.astype(int)) != 0] + step / 2
@@ -57,7 +57,7 @@ def test_the_edge_of_a_doorway_is_found_within_one_bearing_of_256() -> None:
 
 def test_a_rough_wall_looked_at_aslant_is_felt_farther_than_a_smooth_one() -> None:
     rough, smooth = (replace(MATERIALS[name], reflectance=0.8) for name in ("rough", "smooth"))
-    aslant = np.full(1, np.radians(65.0))
+    aslant: Floats = np.array([65.0 * np.pi / 180])
     rng = np.random.default_rng(0)
     codes = [infrared_codes(wall_at(1.1, wall), np.zeros(3), aslant, THREE, rng)[0] for wall in (rough, smooth)]
     assert codes[0] % 10 > 0
