@@ -17,7 +17,15 @@ from slam.map_scores import MapTruth, best_alignment, moved, score_map
 from slam.result_folder import MAP, ODOMETRY, TRAJECTORY, read_report, recording_of
 from slam.room_file import free_space, read_features, read_room
 from slam.trajectory_file import Trajectory, TrajectoryFileError, read_trajectory
-from slam.trajectory_scores import Spread, Track, absolute_errors, read_relations, relation_errors, relative_errors
+from slam.trajectory_scores import (
+    Spread,
+    Track,
+    absolute_errors,
+    align,
+    read_relations,
+    relation_errors,
+    relative_errors,
+)
 
 VISIBLE_RAYS = 3600  # a tenth of a degree
 
@@ -35,12 +43,23 @@ def pose_scores(folder: Path, reference: Path) -> Scores:
     positions = true.positions[within]
     scores: Scores = {
         "position": asdict(Spread.of(absolute_errors(estimated[:, :2], positions))),
+        "position, scale undone": asdict(Spread.of(absolute_errors(scaled_to(estimated[:, :2], positions), positions))),
         "position by odometry alone": asdict(Spread.of(absolute_errors(dead_reckoned[:, :2], positions))),
     }
     if true.headings is not None:
         metres, radians = relative_errors(estimated, true.poses[within])
         scores |= {"step": asdict(Spread.of(metres)), "turn": asdict(Spread.of(radians))}
     return scores
+
+
+def scaled_to(estimated: Floats, true: Floats) -> Floats:
+    """Positions (n, 2) stretched about their mean to the scale that fits the true ones best (Umeyama 1991).
+
+    A camera that looks down on a robot sees it nearer, and so larger, than the floor it was calibrated on.
+    """
+    turned = transform(estimated - estimated.mean(axis=0), np.array([0.0, 0.0, align(estimated, true)[2]]))
+    scale = float(np.sum(turned * (true - true.mean(axis=0))) / max(float(np.sum(turned**2)), 1e-12))
+    return np.asarray(estimated.mean(axis=0) + scale * (estimated - estimated.mean(axis=0)))
 
 
 def relation_scores(folder: Path, relations: Path) -> Scores:

@@ -73,7 +73,9 @@ def _in_words(hint: Any) -> str:
 
 
 def _write(table: Any, name: str, lines: list[str]) -> None:
+    hints = get_type_hints(type(table))
     values = {field.name: getattr(table, field.name) for field in fields(table)}
+    values = {key: float(value) if hints[key] is float else value for key, value in values.items()}
     plain = {key: value for key, value in values.items() if value is not None and not is_dataclass(value)}
     if name and plain:
         lines += ["", f"[{name}]"]

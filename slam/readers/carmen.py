@@ -144,6 +144,8 @@ def _finite(fields: list[str]) -> Floats:
 
 def _ranges(fields: list[str], strict: bool) -> Floats:
     """The ranges; drivers write zero for a reading that failed, which is nan unless in strict mode."""
+    if not fields:
+        raise LineError("a scan of 0 ranges")
     ranges = numbers(fields)
     refuse_impossible(ranges if strict else ranges[ranges != 0])
     return np.where(ranges == 0, np.nan, ranges)
