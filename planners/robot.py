@@ -78,6 +78,8 @@ class Robot:
     @cached_property
     def symmetry(self) -> int:
         """How many headings look the same: 2 for a rectangle, 4 for a square, 1 for most outlines."""
+        if self.is_disc:
+            return SYMMETRIES[0]
         shape = shapely.union_all([Polygon(part) for part in self.parts])
         turned = (shapely.affinity.rotate(shape, 360 / order, origin=(0, 0)) for order in SYMMETRIES)
         alike = (shape.symmetric_difference(each).area < 1e-9 * shape.area for each in turned)
