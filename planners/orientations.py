@@ -93,7 +93,7 @@ def _united(pieces: Floats, count: int) -> Floats:
 
 
 @compiled
-def _nearest(piece: Floats, wall: Floats) -> tuple[float, float, float]:
+def nearest(piece: Floats, wall: Floats) -> tuple[float, float, float]:
     """Vector from a wall (4,) to a piece (4,) between their nearest points, and its length; 0 if they cross."""
     best, best_x, best_y = np.inf, 0.0, 0.0
     for turn in range(2):
@@ -148,7 +148,7 @@ def _room_before(piece: Floats, wall: Floats, normal: Floats, reach: float) -> f
 def _missing_wall(polar: Floats, radius: float, piece: Floats, wall: Floats, reach: float) -> Floats:
     """Headings at which a robot that slides along a piece misses a wall, by any of the separating lines."""
     pieces, legal, normal = np.empty((6 * MOST, 2)), np.empty((MOST, 2)), np.empty(2)
-    x, y, distance = _nearest(piece, wall)
+    x, y, distance = nearest(piece, wall)
     count = 0
     for k in range(6):
         if k == 0:
@@ -197,7 +197,7 @@ def legal_along(polar: Floats, radius: float, piece: Floats, ends: Floats, margi
             continue
         if min(wall[1], wall[3]) > high_y or max(wall[1], wall[3]) < low_y:
             continue
-        if _nearest(piece, wall)[2] < reach:
+        if nearest(piece, wall)[2] < reach:
             legal = intersected(legal, _missing_wall(polar, radius + margin, piece, wall, reach))
             if legal.shape[0] == 0:
                 break
