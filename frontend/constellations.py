@@ -16,12 +16,28 @@ def consistent(a: Floats, b: Floats, turns: Floats, distance_gate: float, turn_g
     across_a, across_b = a[:, None] - a[None], b[:, None] - b[None]
     far_a, far_b = np.linalg.norm(across_a, axis=2), np.linalg.norm(across_b, axis=2)
     same_distance = np.abs(far_a - far_b) < distance_gate
-    same_turn = np.abs(wrap(turns[:, None] - turns[None])) < turn_gate
+    same_turn = ~(np.abs(wrap(turns[:, None] - turns[None])) >= turn_gate)
     bearing = np.arctan2(across_a[..., 1], across_a[..., 0]) - np.arctan2(across_b[..., 1], across_b[..., 0])
     off = np.abs(wrap(bearing - turns[:, None]))
     slack = turn_gate + np.arctan2(distance_gate, np.maximum(far_a, 1e-9))
-    aligned = off < slack
+    aligned = ~(off >= slack)  # a pair without a direction of its own contradicts none
     return np.asarray(same_distance & same_turn & aligned & aligned.T)
+
+
+@compiled
+def constellations(graph: Booleans) -> list[Integers]:
+    """For each pair the largest clique around it, without repeats."""
+    found = [np.empty(0, dtype=np.int64) for _ in range(0)]
+    for seed in range(graph.shape[0]):
+        around = np.flatnonzero(graph[seed])
+        inside = graph[around][:, around]
+        clique = np.sort(np.append(around[largest_clique(inside)], seed))
+        known = False
+        for other in found:
+            known = known or bool(other.size == clique.size and np.all(other == clique))
+        if not known:
+            found.append(clique)
+    return found
 
 
 @compiled

@@ -20,12 +20,12 @@ class LandmarkSettings:
     finest: float = 0.1  # smallest sigma; larger ignores more clutter and noise
     scales: int = 5  # sigmas, each √2 coarser than the one before; more asks for longer walls
     spacing: float = 0.04  # of the resampled boundary; larger is cheaper and blurs places
-    least_turn: float = 0.45  # larger keeps only sharper corners
+    least_turn: float = 0.4  # larger keeps only sharper corners
     significance: float = 4.0  # sigmas of the noise law; larger keeps only clearer corners
     support: float = 1.0  # metres of wall used on each side of a knot; larger is surer on straight walls
-    least_support: float = 0.2  # metres of wall a side must have; larger drops knots near chain ends
-    least_points: int = 4  # readings a side must have; larger drops far knots
-    roughness: float = 2.5  # rms across the fitted lines in units of the noise; larger takes rough or curved walls
+    least_support: float = 0.12  # metres of wall a side must have; larger drops knots near chain ends
+    least_points: int = 3  # readings a side must have; larger drops far knots
+    roughness: float = 4.0  # rms across the fitted lines in units of the noise; larger takes rough or curved walls
 
 
 @dataclass(frozen=True, eq=False)

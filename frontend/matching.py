@@ -8,10 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frontend.constellations import consistent, largest_clique
+from frontend.agreement import agreement
+from frontend.constellations import consistent, constellations
 from frontend.joint_compatibility import JointPairs, most_joint_pairs
+from frontend.pair_pose import PairedKnots, pose_of_pairs
 from frontend.primal_sketch import KnotKind, PrimalSketch
-from frontend.rigid_motion import rotation, transform, wrap
+from frontend.rigid_motion import wrap
 from frontend.scan import Booleans, Floats, Integers
 
 
@@ -20,10 +22,15 @@ class MatchingSettings:
     """Opinions of the matching; lengths in metres, angles in radians."""
 
     confidence: float = 0.99  # of the χ² gates; larger accepts more distant pairs
+    wall_noise: float = 0.07  # of the direction of a wall; larger trusts positions more than walls
     wall_gate: float = 0.2  # two views of one wall may differ in direction by this; larger accepts more pairs
     distance_gate: float = 0.15  # two views of one distance between knots may differ by this; larger accepts more
     most_knots: int = 15  # knots of each sketch that take part, surest first; larger is slower and finds more
-    least_clique: int = 4  # pairs a constellation needs; larger accepts fewer and surer matches
+    most_poses: int = 30  # constellations whose pose is verified, largest first; larger is slower and misses less
+    least_clique: int = 3  # pairs a constellation needs, walls agreeing; larger accepts fewer and surer matches
+    least_support: float = 0.5  # share of walls in common view that must coincide; larger accepts fewer poses
+    most_contradiction: float = 0.15  # share of walls that may stand in free space; larger accepts more poses
+    wall_tolerance: float = 0.12  # metres two views of a wall may lie apart; larger supports coarser poses
     position_noise: float = 0.03  # metres added to every knot; larger forgives worse covariances
 
 
@@ -60,28 +67,44 @@ def match_near(
     chosen = np.column_stack([a[pairs[:, 0]], b[pairs[:, 1]]])
     if len(chosen) < 2:
         return _nothing(f"{len(chosen)} of {min(a.size, b.size)} knots agree with the guess: a pose needs two", chosen)
-    return _solved(fixed, moving, chosen, guess, settings)
+    pose, information, residual = _solved(fixed, moving, chosen, guess, settings)
+    reason = f"{len(chosen)} knots agree jointly with the guess, {residual:.3f} m apart"
+    return Matches(chosen, pose, np.asarray(np.linalg.inv(information)), residual, reason)
 
 
 def match_lost(fixed: PrimalSketch, moving: PrimalSketch, settings: MatchingSettings) -> Matches:
     """The largest constellation of knots both sketches share, without any guess."""
     a, b = surest_landmarks(fixed, settings.most_knots), surest_landmarks(moving, settings.most_knots)
     i, j = np.nonzero(same_kind(fixed, a, moving, b, settings)) if a.size and b.size else (np.empty(0, int),) * 2
-    if i.size < settings.least_clique:
-        return _nothing(f"{i.size} pairs of alike knots: a constellation needs {settings.least_clique}")
+    if not i.size:
+        return _nothing(f"no alike knots among {a.size} and {b.size}")
     i, j = a[i], b[j]
     turns = _common_turn(fixed.walls[i], moving.walls[j])
     graph = consistent(fixed.positions[i], moving.positions[j], turns, settings.distance_gate, settings.wall_gate)
     graph &= (i[:, None] != i[None]) & (j[:, None] != j[None])
-    clique = largest_clique(graph)
-    chosen = np.column_stack([i[clique], j[clique]])
-    if clique.size < 2:
-        return _nothing("no two pairs of knots agree in distance and direction")
-    solved = _solved(fixed, moving, chosen, None, settings)
-    if clique.size < settings.least_clique:
-        reason = f"{clique.size} knots form one constellation: {settings.least_clique} are needed"
-        return Matches(chosen, None, None, solved.residual, reason)
-    return solved
+    cliques = [c for c in constellations(graph) if c.size > 1 or not np.isnan(turns[c[0]])]
+    if not cliques:
+        return _nothing("no pair of knots gives a direction, and no two agree in their distance")
+    largest = sorted(cliques, key=len, reverse=True)[: settings.most_poses]
+    return _verified(fixed, moving, [np.column_stack([i[c], j[c]]) for c in largest], settings)
+
+
+def _verified(fixed: PrimalSketch, moving: PrimalSketch, found: list[Integers], settings: MatchingSettings) -> Matches:
+    """The constellation whose pose lays the most walls on walls and the fewest in free space, if it is good enough."""
+    solved = [_solved(fixed, moving, pairs, None, settings) for pairs in found]
+    judged = [agreement(fixed, moving, pose, settings.wall_tolerance) for pose, _, _ in solved]
+    scores = [len(pairs) + 4 * support - 8 * against for pairs, (support, against) in zip(found, judged, strict=True)]
+    k = int(np.argmax(scores))
+    pairs, (pose, information, residual), (support, against) = found[k], solved[k], judged[k]
+    seen = (
+        f"{len(pairs)} knots form one constellation, {residual:.3f} m apart; "
+        f"{support:.0%} of the walls coincide, {against:.0%} stand in free space"
+    )
+    if len(pairs) < settings.least_clique:
+        return Matches(pairs, None, None, residual, f"{seen}: {settings.least_clique} pairs are needed")
+    if support < settings.least_support or against > settings.most_contradiction:
+        return Matches(pairs, None, None, residual, f"{seen}: not views of one room")
+    return Matches(pairs, pose, np.asarray(np.linalg.inv(information)), residual, seen)
 
 
 def surest_landmarks(sketch: PrimalSketch, most: int) -> Integers:
@@ -94,26 +117,32 @@ def surest_landmarks(sketch: PrimalSketch, most: int) -> Integers:
 def same_kind(
     fixed: PrimalSketch, a: Integers, moving: PrimalSketch, b: Integers, settings: MatchingSettings
 ) -> Booleans:
-    """Whether knots (i,) and (j,) can be one: a wall in common, the same turn where both walls were seen.
+    """Whether knots (i,) and (j,) can be one: surface on a common side, the same turn where both walls were seen.
 
-    A jamb shows one wall of a convex corner; seen from the other side of the corner, both.
+    A jamb shows one wall of a convex corner, whose other wall another place may see. A bump is only ever a bump.
     """
-    seen_a, seen_b = ~np.isnan(fixed.walls[a]), ~np.isnan(moving.walls[b])
-    shared = np.any(seen_a[:, None] & seen_b[None], axis=2)
-    jamb_a, jamb_b = fixed.kinds[a] == KnotKind.JAMB, moving.kinds[b] == KnotKind.JAMB
+    sides_a, sides_b = _surface_sides(fixed)[a], _surface_sides(moving)[b]
+    bump_a, bump_b = fixed.kinds[a] == KnotKind.BUMP, moving.kinds[b] == KnotKind.BUMP
+    corner_a, corner_b = np.all(sides_a, axis=1), np.all(sides_b, axis=1)
     turn_a, turn_b = fixed.turns[a], moving.turns[b]
-    one_jamb = jamb_a[:, None] != jamb_b[None]
-    convex = np.where(jamb_a[:, None], turn_b[None] < 0, turn_a[:, None] < 0)
     same_turn = np.abs(wrap(turn_a[:, None] - turn_b[None])) < 2 * settings.wall_gate
-    return np.asarray(shared & np.where(one_jamb, convex, (jamb_a[:, None] & jamb_b[None]) | same_turn))
+    convex = (~corner_a | (turn_a < 0))[:, None] & (~corner_b | (turn_b < 0))[None]
+    shared = np.any(sides_a[:, None] & sides_b[None], axis=2) & ~(bump_a[:, None] | bump_b[None])
+    alike = shared & np.where(corner_a[:, None] & corner_b[None], same_turn, convex)
+    return np.asarray(alike | (bump_a[:, None] & bump_b[None]))
+
+
+def _surface_sides(sketch: PrimalSketch) -> Booleans:
+    """Whether surface leads to and from each knot (k, 2)."""
+    return np.column_stack([np.roll(sketch.real, 1), sketch.real])
 
 
 def _common_turn(walls_a: Floats, walls_b: Floats) -> Floats:
-    """The heading (p,) of the moving frame that each pair's common walls ask for."""
+    """The heading (p,) of the moving frame that each pair's common walls ask for, nan where they have none."""
     turned = walls_a - walls_b
     seen = ~np.isnan(turned)
     sine, cosine = np.sum(np.sin(turned), axis=1, where=seen), np.sum(np.cos(turned), axis=1, where=seen)
-    return np.asarray(np.arctan2(sine, cosine))
+    return np.where(np.any(seen, axis=1), np.arctan2(sine, cosine), np.nan)
 
 
 def _noisy(covariances: Floats, settings: MatchingSettings) -> Floats:
@@ -121,42 +150,14 @@ def _noisy(covariances: Floats, settings: MatchingSettings) -> Floats:
 
 
 def _solved(
-    fixed: PrimalSketch,
-    moving: PrimalSketch,
-    pairs: Integers,
-    guess: Floats | None,
-    settings: MatchingSettings,
-) -> Matches:
-    """The pose of the moving sketch from its pairs alone, weighted by their covariances."""
-    targets, sources = fixed.positions[pairs[:, 0]], moving.positions[pairs[:, 1]]
-    pose = _unweighted_pose(targets, sources) if guess is None else guess.copy()
-    for _ in range(4):
-        turn = rotation(pose[2])
-        spread = (
-            _noisy(fixed.covariances[pairs[:, 0]], settings)
-            + turn @ _noisy(moving.covariances[pairs[:, 1]], settings) @ turn.T
-        )
-        weights = np.linalg.inv(spread)
-        errors = targets - transform(sources, pose)
-        slopes = np.zeros((pairs.shape[0], 2, 3))
-        slopes[:, :, :2] = np.eye(2)
-        slopes[:, :, 2] = sources @ turn.T @ np.array([[0.0, 1.0], [-1.0, 0.0]])
-        information = np.einsum("pki,pkl,plj->ij", slopes, weights, slopes)
-        step = np.linalg.solve(information, np.einsum("pki,pkl,pl->i", slopes, weights, errors))
-        pose = pose + step
-    pose[2] = float(wrap(pose[2]))
-    residual = float(np.sqrt(np.mean(np.sum((targets - transform(sources, pose)) ** 2, axis=1))))
-    how = "form one constellation" if guess is None else "agree jointly with the guess"
-    reason = f"{pairs.shape[0]} knots {how}, {residual:.3f} m apart"
-    return Matches(pairs, pose, np.linalg.inv(information), residual, reason)
-
-
-def _unweighted_pose(targets: Floats, sources: Floats) -> Floats:
-    """The least-squares rigid motion from sources to targets (p, 2)."""
-    a, b = targets - targets.mean(axis=0), sources - sources.mean(axis=0)
-    heading = float(np.arctan2(np.sum(b[:, 0] * a[:, 1] - b[:, 1] * a[:, 0]), np.sum(a * b)))
-    x, y = targets.mean(axis=0) - rotation(heading) @ sources.mean(axis=0)
-    return np.array([x, y, heading])
+    fixed: PrimalSketch, moving: PrimalSketch, pairs: Integers, guess: Floats | None, settings: MatchingSettings
+) -> tuple[Floats, Floats, float]:
+    """The pose of the moving sketch from its pairs alone, its information, and the distance left."""
+    a, b = pairs.T
+    turns = _common_turn(fixed.walls[a], moving.walls[b])
+    covariances = _noisy(fixed.covariances[a], settings), _noisy(moving.covariances[b], settings)
+    paired = PairedKnots(fixed.positions[a], covariances[0], moving.positions[b], covariances[1], turns)
+    return pose_of_pairs(paired, guess, settings.wall_noise)
 
 
 def _nothing(reason: str, pairs: Integers | None = None) -> Matches:

@@ -48,6 +48,7 @@ class PrimalSketch:
     walls: (k, 2) direction of travel along the surface before and after the knot, nan where it was not seen.
     scales: (k, 2) finest and coarsest sigma. covariances: (k, 2, 2). landmark: (k,). real: (k,) whether the edge
     from knot i to i + 1 is surface. readings: (k,) place among the readings. lines: the walls between knots.
+    origin: (2,) where the sensor sat.
     """
 
     kinds: NDArray[np.uint8]
@@ -61,6 +62,7 @@ class PrimalSketch:
     real: Booleans
     readings: Floats
     lines: Lines
+    origin: Floats
 
 
 def sketch(contour: Contour, settings: SketchSettings) -> PrimalSketch:
@@ -87,6 +89,7 @@ def sketch(contour: Contour, settings: SketchSettings) -> PrimalSketch:
         real=_real_edges(knots.readings, edges),
         readings=knots.readings,
         lines=wall_lines(points, knots.readings, _real_edges(knots.readings, edges), noise),
+        origin=contour.origin,
     )
 
 
@@ -144,7 +147,7 @@ def _jambs(
 ) -> _Knots:
     jambs = find_jambs(points, noise, edges, contour.origin, settings.jambs)
     return _Knots(
-        kinds=np.full(jambs.turns.size, KnotKind.JAMB, dtype=np.uint8),
+        kinds=np.where(jambs.bumps, KnotKind.BUMP, KnotKind.JAMB).astype(np.uint8),
         positions=jambs.positions,
         turns=jambs.turns,
         headings=jambs.headings,
