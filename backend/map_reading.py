@@ -30,6 +30,7 @@ class ReadingSettings:
 
     opening: float = 0.05  # larger removes wider slits and spikes of free space
     inset: float = 0.05  # larger keeps plans farther from surfaces
+    spacing: float = 0.05  # larger labels faster, by fewer samples
     reach: float = 0.06  # larger lets samples farther off support an edge, and faces farther off attract it
     panel: float = 0.05  # larger makes repaired panels thicker
     deep: float = 0.10  # larger calls a piece of boundary overruled only farther inside the free space
@@ -65,7 +66,7 @@ def read_map(
     free = _polygons(mask, faces, counts, settings)
     free = _known_ground(free, views.origins, settings.least_area)
     free = without_slivers(free, samples.points, settings.reach, settings.objects)
-    edges = label_edges(boundary_edges(free), samples, counts, settings.reach)
+    edges = label_edges(boundary_edges(free), samples.thinned(settings.spacing), counts, settings.reach)
     objects = objects_in(free, edges, settings.objects)
     walls = as_polygons(shapely.union_all([free, *(thing.outline for thing in objects)]))
     doors = doors_of(walls, _reported(views), sight, settings.doors)

@@ -34,6 +34,7 @@ class MergeSettings:
 
     cell: float = 0.025  # larger is faster and coarser; at most half the thinnest wall
     piece: float = 0.10  # larger samples long edges more sparsely
+    spacing: float = 0.05  # larger settles faster, on fewer samples
     finest: float = 0.01  # no spread is believed below this; larger blurs good sensors
     wall_strip: float = 0.06  # larger holds walls better against misplaced views, and closes thinner slits
     settling: SettleSettings = field(default_factory=SettleSettings)
@@ -79,7 +80,11 @@ class Merger:
         if not self._placed:
             raise MergingError("a map needs one view at least")
         local = self._samples()
-        poses = settle(local.where(local.sure), np.array([p.pose for _, p in self._in_order()]), self.settings.settling)
+        poses = settle(
+            local.where(local.sure).thinned(self.settings.spacing),
+            np.array([p.pose for _, p in self._in_order()]),
+            self.settings.settling,
+        )
         samples = local.placed(poses)
         faces = fuse_faces(samples, self.settings.faces)
         self._vote_again(poses, faces)

@@ -33,6 +33,14 @@ class Samples:
         )
         return replace(self, points=points + poses[self.view, :2], normals=normals)
 
+    def thinned(self, spacing: float) -> "Samples":
+        """One sample for about every `spacing` metres of each view's surface; the total weight stays."""
+        first = np.append(0, np.flatnonzero(np.diff(self.view)) + 1) if len(self.view) else np.empty(0, dtype=np.int64)
+        total = np.cumsum(self.weight)
+        before = np.repeat(total[first] - self.weight[first], np.diff(np.append(first, len(self.view))))
+        steps = np.floor((total - before) / spacing) - np.floor((total - before - self.weight) / spacing)
+        return replace(self, weight=steps * spacing).where(steps > 0)
+
     def where(self, chosen: NDArray[np.bool_]) -> "Samples":
         """The samples for which `chosen` (n,) holds."""
         points, normals, view = self.points[chosen], self.normals[chosen], self.view[chosen]

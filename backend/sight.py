@@ -28,12 +28,9 @@ class Sight:
     def pairs(self, points: Floats) -> tuple[Ints, Ints]:
         """All (point, view) where the point (n, 2) lies in the view's free polygon, by point."""
         rings = (self.first, self.bearing, self.width, self.edges)
-        none = np.empty(0, dtype=np.int64)
-        number = _find(points, self.origins, self.reach, rings, (none, none))
-        found = np.empty(number, dtype=np.int64), np.empty(number, dtype=np.int64)
-        _find(points, self.origins, self.reach, rings, found)
-        order = np.argsort(found[0], kind="stable")
-        return found[0][order], found[1][order]
+        point, view = _find(points, self.origins, self.reach, rings)
+        order = np.argsort(point, kind="stable")
+        return point[order], view[order]
 
 
 def sight_of(rings: list[Floats], origins: Floats) -> Sight:
@@ -58,10 +55,11 @@ def _fan(ring: Floats, origin: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 @njit(cache=True)
-def _find(points, origins, reach, rings, found):  # type: ignore[no-untyped-def]
-    """Count the pairs, and write them where there is room."""
+def _find(points, origins, reach, rings):  # type: ignore[no-untyped-def]
+    """All pairs, view by view."""
     first, bearing, width, edges = rings
     count = 0
+    found = np.empty((2, len(points) + 64), dtype=np.int64)
     for view in range(len(origins)):
         start, end = first[view], first[view + 1]
         for point in range(len(points)):
@@ -75,7 +73,8 @@ def _find(points, origins, reach, rings, found):  # type: ignore[no-untyped-def]
             ax, ay = edges[edge, 0]
             bx, by = edges[edge, 1]
             if (bx - ax) * (points[point, 1] - ay) - (by - ay) * (points[point, 0] - ax) > 0:
-                if count < len(found[0]):
-                    found[0][count], found[1][count] = point, view
+                if count == found.shape[1]:
+                    found = np.concatenate((found, np.empty_like(found)), axis=1)
+                found[0, count], found[1, count] = point, view
                 count += 1
-    return count
+    return found[0, :count], found[1, :count]

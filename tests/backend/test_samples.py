@@ -20,3 +20,12 @@ def test_choosing_keeps_all_fields_in_step() -> None:
     far = two.where(two.points[:, 0] > 1.0)
     assert len(far.view) == len(far.points) == len(far.normals) == len(far.sigma) == len(far.weight) == len(far.sure)
     assert far.points[:, 0].min() > 1.0
+
+
+def test_thinning_keeps_the_weight_and_does_not_depend_on_other_views() -> None:
+    rng = np.random.default_rng(2)
+    one, other = (wall_samples(np.zeros(2), np.array([x, 0.0]), 1, 0.01, rng) for x in (2.03, 3.0))
+    thin = joined(one, other).thinned(0.2)
+    assert len(thin.view) < 0.3 * (len(one.view) + len(other.view))
+    np.testing.assert_allclose(thin.weight.sum(), one.weight.sum() + other.weight.sum(), atol=0.4)
+    np.testing.assert_array_equal(one.thinned(0.2).points, thin.points[: len(one.thinned(0.2).points)])
