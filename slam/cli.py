@@ -13,6 +13,7 @@ from rich.progress import track
 from rich.table import Table
 
 from frontend.scan import Scan
+from planners.path import Answer
 from planners.robot import parse_robot
 from planners.world import World
 from slam import doctor as check_up
@@ -75,6 +76,10 @@ def merge(
     for damaged in drive.damaged:
         err.print(f"left out or mended: {damaged}")
     _print_values({**report["counts"], **{f"{name} (s)": value for name, value in report["timings"].items()}})
+    for name, answer in paths.items():
+        out.print(f"{name}: {_told(answer)}")
+    if trouble is not None:
+        out.print(f"no path planned: {trouble}")
     out.print(f"{to}: map.geojson, trajectory.tum, report.json, settings.toml, figures")
 
 
@@ -126,13 +131,8 @@ def plan(
         write_whole(to, path_text(answer.path, planner.value))
     if as_json:
         print(json.dumps({**answer_values(answer), "layer": taken}))
-    elif answer.path is None:
-        out.print(f"{answer.kind}: {answer.reason}")
     else:
-        path = answer.path
-        out.print(
-            f"path of {path.length:.3f} m, clearance {path.clearance:.3f} m, {len(path.poses)} poses: {answer.reason}"
-        )
+        out.print(_told(answer))
     if answer.path is None:
         raise typer.Exit(NO_PATH)
 
@@ -184,6 +184,13 @@ def main() -> None:
 
 def _progress(scans: tuple[Scan, ...]) -> Iterable[Scan]:
     return track(scans, description="scans", console=err, transient=True, disable=not err.is_terminal)
+
+
+def _told(answer: Answer) -> str:
+    if answer.path is None:
+        return f"{answer.kind}: {answer.reason}"
+    path = answer.path
+    return f"path of {path.length:.3f} m, clearance {path.clearance:.3f} m, {len(path.poses)} poses: {answer.reason}"
 
 
 def _print_values(values: dict[str, Any]) -> None:

@@ -1,0 +1,52 @@
+"""Planning on a room: poses and answers as text, and the tour that follows every merge."""
+
+import json
+
+import numpy as np
+import pytest
+from shapely import MultiPolygon, Polygon
+
+from planners.path import Answer, Path, PlanningError
+from slam.planning import PLANNERS, PlanningSettings, answer_values, parse_pose, path_text, tour, tour_or_reason
+
+ROOM = MultiPolygon([Polygon([(0, 0), (2, 0), (2, 3), (3, 3), (3, 0), (6, 0), (6, 4), (0, 4)])])
+DRIVE = np.array([[1.0, 1.0, 0.0], [1.0, 3.5, 1.0], [5.0, 1.0, 2.0], [0.01, 0.01, 0.0]])
+
+
+def test_the_tour_goes_to_the_farthest_place_where_the_robot_can_stand() -> None:
+    answers = tour(ROOM, DRIVE, PlanningSettings())
+    assert answers.keys() == PLANNERS.keys()
+    for answer in answers.values():
+        assert answer.path is not None
+        assert np.allclose(answer.path.poses[0, :2], DRIVE[0, :2])
+        assert np.allclose(answer.path.poses[-1, :2], DRIVE[2, :2])
+        assert answer.path.length >= 5.8
+
+
+def test_a_map_nobody_can_drive_on_says_so() -> None:
+    answers, reason = tour_or_reason(ROOM, DRIVE[3:], PlanningSettings())
+    assert answers == {}
+    assert reason == "a robot disc:0.15 cannot stand at any of 1 poses of the drive"
+
+
+def test_a_pose_without_heading_leaves_it_open() -> None:
+    assert np.array_equal(parse_pose("1,-2.5"), [1, -2.5, np.nan], equal_nan=True)
+    assert np.array_equal(parse_pose("1,-2.5,0.5"), [1, -2.5, 0.5])
+
+
+@pytest.mark.parametrize("text", ["", "1", "1,2,3,4", "1;2", "nan,1", "inf,1"])
+def test_what_is_no_pose_is_refused(text: str) -> None:
+    with pytest.raises(PlanningError, match="X,Y"):
+        parse_pose(text)
+
+
+def test_answers_are_plain_values() -> None:
+    path = Path(np.array([[0.0, 0.0, 0.0], [3.0, 4.0, 0.5]]), 0.25, "proved")
+    assert answer_values(Answer("path", "found", path)) == {
+        "answer": "path", "length": 5.0, "clearance": 0.25, "poses": [[0, 0, 0], [3, 4, 0.5]], "reason": "found",
+    }  # fmt: skip
+    nothing = answer_values(Answer("no path", "walled in"))
+    assert nothing == {"answer": "no path", "length": None, "clearance": None, "poses": [], "reason": "walled in"}
+    feature = json.loads(path_text(path, "cones"))["features"][0]
+    assert feature["geometry"] == {"type": "LineString", "coordinates": [[0, 0], [3, 4]]}
+    assert feature["properties"]["headings"] == [0.0, 0.5]
