@@ -25,7 +25,12 @@ def snap_view(ring: Floats, origin: Floats, surfaces: Surfaces, label: Ints, fac
 
 
 def snap_ring(ring: Floats, faces: WallFaces, reach: float) -> Floats:
-    """A traced ring (r, 2), free on its left, re-expressed on the faces within `reach` metres of it."""
+    """A traced ring (r, 2), free on its left, re-expressed on the faces within `reach` metres of it.
+
+    A ring too short for directions to be read off its steps stays as traced.
+    """
+    if len(ring) * np.linalg.norm(ring[1] - ring[0]) < 8 * reach:
+        return ring
     ahead, behind = np.roll(ring, -3, axis=0), np.roll(ring, 3, axis=0)
     along = (ahead - behind) / np.maximum(np.linalg.norm(ahead - behind, axis=1, keepdims=True), 1e-9)
     label = faces.nearest(ring, np.stack([-along[:, 1], along[:, 0]], axis=1), reach)

@@ -43,9 +43,9 @@ def boundary_scores(claimed: Floats, true: Floats, visible: BaseGeometry) -> Bou
     if not len(claimed):
         raise MapScoreError("the map claims no surface: none of its edges is real")
     there, here = samples(claimed), samples(true)
-    here = here[shapely.dwithin(shapely.points(here), visible, STEP)]
-    off_truth = shapely.distance(shapely.points(there), shapely.union_all(shapely.linestrings(true)))
-    missed = shapely.distance(shapely.points(here), shapely.union_all(shapely.linestrings(claimed)))
+    shapely.prepare(visible)
+    here = here[shapely.dwithin(visible, shapely.points(here), STEP)]
+    off_truth, missed = distances(there, true), distances(here, claimed)
     near = [(float(np.mean(off_truth <= tol)), float(np.mean(missed <= tol))) for tol in (0.05, 0.10)]
     precision, recall = _corner_scores(corners(claimed), corners(true), visible)
     return BoundaryScores(
@@ -71,6 +71,13 @@ def samples(edges: Floats, step: float = STEP) -> Floats:
     edge = np.repeat(np.arange(len(edges)), number)
     share = (np.arange(len(edge)) - np.repeat(np.cumsum(number) - number, number) + 0.5) / number[edge]
     return np.asarray(edges[edge, 0] + share[:, None] * (edges[edge, 1] - edges[edge, 0]))
+
+
+def distances(points: Floats, edges: Floats) -> Floats:
+    """Distance (n,) of every point to the nearest edge (e, 2, 2)."""
+    tree = shapely.STRtree([shapely.LineString(edge) for edge in edges])
+    pairs, away = tree.query_nearest(shapely.points(points), return_distance=True, all_matches=False)
+    return np.asarray(away[np.argsort(pairs[0])])
 
 
 def corners(edges: Floats, least_turn: float = np.radians(30)) -> Floats:
@@ -124,7 +131,7 @@ def _angle_error(claimed: Floats, true: Floats, least: float = 0.3) -> float:
 
 def _corner_scores(claimed: Floats, true: Floats, visible: BaseGeometry, within: float = 0.10) -> tuple[float, float]:
     """Precision against all true corners, recall of those by visible ground; nan where there are none."""
-    seen = true[shapely.dwithin(shapely.points(true), visible, STEP)] if len(true) else true
+    seen = true[shapely.dwithin(visible, shapely.points(true), STEP)] if len(true) else true
     if not len(claimed) or not len(seen):
         return float("nan"), 0.0 if len(seen) else float("nan")
     right = np.isfinite(cKDTree(true).query(claimed, distance_upper_bound=within)[0])
