@@ -1,12 +1,14 @@
 """The mapper: scans go in one by one, poses come out at once; the graph of keyframes is mended when a loop closes."""
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from time import perf_counter
 
 import numpy as np
 
 from backend.estimate import Decision, Estimate
 from backend.factor_graph import FactorGraph, GraphSettings
+from backend.joint_refinement import Chain, RefinementSettings, Sheaf, refine
 from backend.landmark_map import LandmarkMap, LandmarkSettings
 from backend.loop_closure import Candidate, Drift, LoopSettings, candidates
 from backend.odometry import Move, Odometry, OdometrySettings
@@ -29,6 +31,7 @@ class MapperSettings:
     verification: VerificationSettings = field(default_factory=VerificationSettings)
     landmarks: LandmarkSettings = field(default_factory=LandmarkSettings)
     graph: GraphSettings = field(default_factory=GraphSettings)
+    refinement: RefinementSettings = field(default_factory=RefinementSettings)
     keyframe_metres: float = 0.15  # larger keeps fewer keyframes
     keyframe_radians: float = 0.3  # larger keeps fewer keyframes
     mend_metres: float = 0.05  # disagreement of a loop that mends the graph at once; larger mends less often
@@ -42,6 +45,7 @@ class _Keyframe:
 
     def __init__(self, scan: int, percept: Percept, pose: Floats) -> None:
         self.scan, self.percept, self.pose = scan, percept, pose
+        self.slipped = False  # whether the wheels disagreed on the way here
         self._placed: tuple[Floats, Faces] | None = None
 
     @property
@@ -110,10 +114,11 @@ class Mapper:
             self._graph.solve()
             self._settle()
         covariances = self._graph.covariances()
+        poses = self._refined()
         self._tick("graph", clock)
         scale, turn_scale, turn_per_metre, forward, left = self._odometry.calibration
         return Estimate(
-            poses=np.array([compose(self._keyframes[k].pose, step) for k, step in self._relative]).reshape(-1, 3),
+            poses=np.array([compose(poses[k], step) for k, step in self._relative]).reshape(-1, 3),
             covariances=covariances[np.array([k for k, _ in self._relative], np.int64)],
             landmarks=self._graph.landmarks,
             sightings=self._landmarks.counts[self._graph.landmark_indices],
@@ -127,6 +132,33 @@ class Mapper:
                 "sensor left": float(left),
             },
         )
+
+    def _refined(self) -> Floats:
+        """Poses (k, 3) of the keyframes after all faces and the wheels were solved together."""
+        poses = np.array([keyframe.pose for keyframe in self._keyframes]).reshape(-1, 3)
+        if len(poses) < 2:
+            return poses
+        surfaces = [keyframe.percept.surface for keyframe in self._keyframes]
+        owners = np.repeat(np.arange(len(poses)), [len(surface.points) for surface in surfaces])
+        sheaf = Sheaf(
+            np.concatenate([surface.points for surface in surfaces]),
+            np.concatenate([surface.normals for surface in surfaces]),
+            np.concatenate([surface.spread for surface in surfaces]),
+            owners,
+        )
+        driven = [self._driven(old, new) for old, new in pairwise(self._keyframes)]
+        # Where the wheels slipped, the graph knows the move, and the wheels only how much may be believed.
+        moves = [
+            between(old.pose, new.pose) if new.slipped else move.pose
+            for (old, new), move in zip(pairwise(self._keyframes), driven, strict=True)
+        ]
+        chain = Chain(np.array(moves), np.array([move.covariance for move in driven]))
+        return refine(poses, sheaf, chain, self.settings.refinement)
+
+    def _driven(self, old: _Keyframe, new: _Keyframe) -> Move:
+        """What the wheels say of the way between two keyframes, covariance in the axes of the new one."""
+        move = self._odometry.predict(between(old.percept.scan.odometry, new.percept.scan.odometry))
+        return Move(move.pose, turned(move.covariance, -move.pose[2]))
 
     def _start(self, percept: Percept) -> None:
         pose = np.zeros(3)
@@ -160,16 +192,16 @@ class Mapper:
 
     def _add_keyframe(self, percept: Percept, placed: Placed, step: Floats) -> None:
         old, new = self._keyframes[-1], len(self._keyframes)
+        self._keyframes.append(_Keyframe(len(self.percepts) - 1, percept, placed.pose))
         self._graph.add_pose(new, placed.pose)
         if placed.refused is None:
             self._graph.add_motion(new - 1, new, step, placed.covariance)
-        if placed.refused is not None or not self._slipped:
-            wheels = between(old.percept.scan.odometry, percept.scan.odometry)
-            driven = self._odometry.predict(wheels)
-            self._graph.add_motion(new - 1, new, driven.pose, turned(driven.covariance, -driven.pose[2]))
+        self._keyframes[new].slipped = self._slipped and placed.refused is None
+        if not self._keyframes[new].slipped:
+            driven = self._driven(old, self._keyframes[new])
+            self._graph.add_motion(new - 1, new, driven.pose, driven.covariance)
         self._slipped = False
         self._drift.add(new - 1, new, placed.covariance)
-        self._keyframes.append(_Keyframe(len(self.percepts) - 1, percept, placed.pose))
         self._way += np.array([np.hypot(*step[:2]), abs(step[2])])
         self._relative.append((new, np.zeros(3)))
         self._see_landmarks(percept, placed.pose)
