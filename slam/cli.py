@@ -65,7 +65,7 @@ def merge(
     opinions = Settings() if settings is None else toml_file.load(settings, Settings)
     drive = open_recording(recording, format_name, strict=strict)
     merged = merge_scans(_progress(drive.scans), opinions)
-    paths, trouble = tour_or_reason(merged.room.safety, merged.estimate.poses, opinions.planning)
+    paths, trouble = tour_or_reason(merged.room.safety, merged.estimate.poses[0], opinions.planning)
     report = report_of(merged, drive, Source(recording, format_name), paths) | {"tour": trouble}
     found = {name: answer.path.poses for name, answer in paths.items() if answer.path is not None}
     story = Story(merged.percepts, merged.estimate.poses, merged.room, merged.estimate.landmarks, found)

@@ -27,7 +27,7 @@ DOTS_PER_INCH = 110
 
 FREE, INK, FAINT, FAKE, OPENED, SKETCH = "#dce9f5", "#1b1b1b", "#b5b5b5", "#d98c00", "#009e73", "#0b62a8"
 LANDMARK, INFERRED = "#c23b80", "#8a6fb3"
-PLANNER_INKS = ("#d55e00", "#0072b2")
+PLANNER_INKS = (("#d55e00", 3.5), ("#0072b2", 1.5))  # the second is drawn over the first
 EDGE_STYLES = {
     EdgeKind.REAL: ("surface", INK, "solid"),
     EdgeKind.OCCLUSION: ("filler", FAKE, "dotted"),
@@ -86,11 +86,11 @@ def merged_map(story: Story) -> Figure:
 
 
 def planned_paths(story: Story) -> Figure:
-    """What each planner found from the first pose to the farthest, on the map's safety layer."""
+    """What each planner found from the first pose to the far end of the map's safety layer."""
     figure, axes = _sheet("planned paths")
     _draw_room(axes, story.room)
-    for (name, poses), ink in zip(story.paths.items(), PLANNER_INKS, strict=False):
-        axes.plot(poses[:, 0], poses[:, 1], "-", color=ink, linewidth=2, label=name)
+    for (name, poses), (ink, width) in zip(story.paths.items(), PLANNER_INKS, strict=False):
+        axes.plot(poses[:, 0], poses[:, 1], "-", color=ink, linewidth=width, label=name)
         axes.plot(*poses[0, :2], "o", color=ink, markersize=6)
         axes.plot(*poses[-1, :2], "s", color=ink, markersize=6)
     return _framed(figure, axes, shapely.get_coordinates(story.room.free))

@@ -24,7 +24,7 @@ class PlanningSettings:
 
     cones: ConesSettings = field(default_factory=ConesSettings)
     configuration_space: ConfigurationSpaceSettings = field(default_factory=ConfigurationSpaceSettings)
-    tour_robot: str = "disc:0.15"  # who goes from the first pose to the farthest; larger fits through fewer doors
+    tour_robot: str = "disc:0.15"  # who goes from the first pose to the map's end; larger fits through fewer doors
 
 
 Planner = Callable[[World, Robot, Floats, Floats, PlanningSettings], Answer]
@@ -39,28 +39,31 @@ PLANNERS: dict[str, Planner] = {
 }
 
 
-def tour(safety: MultiPolygon, poses: Floats, settings: PlanningSettings) -> dict[str, Answer]:
-    """Each planner's way from the first of poses (n, 3) to the farthest place of the drive where the robot can stand.
+def tour(safety: MultiPolygon, start: Floats, settings: PlanningSettings) -> dict[str, Answer]:
+    """Each planner's way from `start` (3,) to the farthest place of the same part of the map, headings free.
 
-    Headings are free. Raises PlanningError where the robot cannot stand anywhere on the drive.
+    Raises PlanningError where the robot cannot stand at the start.
     """
     robot = parse_robot(settings.tour_robot)
-    standable = safety.buffer(-1.01 * robot.reach)
-    fits = shapely.contains_xy(standable, poses[:, 0], poses[:, 1])
-    if not fits.any():
-        raise PlanningError(f"a robot {settings.tour_robot} cannot stand at any of {len(poses)} poses of the drive")
-    places = np.column_stack([poses[fits, :2], np.full(fits.sum(), np.nan)])
-    goal = places[np.argmax(np.linalg.norm(places[:, :2] - places[0, :2], axis=1))]
-    world = World.from_free_space(safety)
-    return {name: planner(world, robot, places[0], goal, settings) for name, planner in PLANNERS.items()}
+    # A little more than the robot, for a rounded corner of the eroded layer lies inside the true curve.
+    standable = shapely.get_parts(safety.buffer(-1.05 * robot.reach))
+    around = [part for part in standable if shapely.contains_xy(part, *start[:2])]
+    if not around:
+        raise PlanningError(
+            f"a robot {settings.tour_robot} cannot stand at the first pose ({start[0]:g}, {start[1]:g})"
+        )
+    corners = shapely.get_coordinates(around[0])
+    goal = corners[np.argmax(np.linalg.norm(corners - start[:2], axis=1))]
+    begin, end, world = np.array([*start[:2], np.nan]), np.array([*goal, np.nan]), World.from_free_space(safety)
+    return {name: planner(world, robot, begin, end, settings) for name, planner in PLANNERS.items()}
 
 
 def tour_or_reason(
-    safety: MultiPolygon, poses: Floats, settings: PlanningSettings
+    safety: MultiPolygon, start: Floats, settings: PlanningSettings
 ) -> tuple[dict[str, Answer], str | None]:
     """The tour's answers, or none of them and the reason: a map that nobody can drive on is still a map."""
     try:
-        return tour(safety, poses, settings), None
+        return tour(safety, start, settings), None
     except (PlanningError, WorldError) as reason:
         return {}, str(reason)
 
