@@ -3,13 +3,15 @@
 Only surface that was measured on both sides can make one: an edge of sight moves with the viewpoint.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frontend.compiled import compiled
 from frontend.lines import crossing, fit_line
-from frontend.scale_space import scale_space, tracks
+from frontend.primitives import Primitive, PrimitiveSettings, classify, smooth_joins
+from frontend.scale_space import ScaleSpace, scale_space, tracks
 from frontend.scan import Floats, Integers
 
 
@@ -26,17 +28,20 @@ class LandmarkSettings:
     least_support: float = 0.12  # metres of wall a side must have; larger drops knots near chain ends
     least_points: int = 3  # readings a side must have; larger drops far knots
     roughness: float = 4.0  # rms across the fitted lines in units of the noise; larger takes rough or curved walls
+    primitives: PrimitiveSettings = field(default_factory=PrimitiveSettings)
 
 
 @dataclass(frozen=True, eq=False)
 class ChainKnots:
     """Knots of one chain, in its order.
 
-    positions (t, 2), turns (t,) counter-clockwise, headings (t,) of the bisector towards the free space,
+    kinds (t,) Primitive, positions (t, 2), turns (t,) counter-clockwise, headings (t,) of the bisector to the free space,
     covariances (t, 2, 2), scales (t, 2) finest and coarsest sigma they live at, places (t,) index of the reading
-    in the chain that the knot follows.
+    in the chain that the knot follows. Smooth joins have a place but no crossing lines: their covariance is that of a
+    curve, sigma along it.
     """
 
+    kinds: NDArray[np.uint8]
     positions: Floats
     turns: Floats
     headings: Floats
@@ -46,13 +51,14 @@ class ChainKnots:
 
 
 def chain_knots(points: Floats, noise: float, settings: LandmarkSettings) -> ChainKnots:
-    """The landmark knots of a chain of points (n, 2), free space on its left."""
+    """The knots of a chain of points (n, 2), free space on its left: its corners, then its smooth joins."""
     arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
     if points.shape[0] < 2 * settings.least_points or arc[-1] < 2 * settings.least_support:
-        return _from_rows(np.empty((0, 8)), np.empty((0, 2)), np.empty(0, dtype=np.int64))
+        return _from_rows(np.empty((0, 8)), np.empty((0, 2)), np.empty(0), np.empty(0, dtype=np.int64), settings)
     sigmas = settings.finest * np.sqrt(2.0) ** np.arange(settings.scales)
     space = scale_space(points, sigmas, settings.spacing)
-    found = tracks(space, thresholds(sigmas, noise, float(arc[-1]) / (arc.size - 1), settings))
+    step = float(arc[-1]) / (arc.size - 1)
+    found = tracks(space, thresholds(sigmas, noise, step, settings))
     order = np.argsort(found.place)
     at = space.arc_length[found.place[order]]
     rows, kept = place_corners(
@@ -61,7 +67,9 @@ def chain_knots(points: Floats, noise: float, settings: LandmarkSettings) -> Cha
                   settings.roughness, settings.least_turn]),
     )  # fmt: skip
     lived = np.column_stack([sigmas[found.first], sigmas[found.last]])[order][kept]
-    return _from_rows(rows, lived, np.searchsorted(arc, at[kept]) - 1)
+    corners = _from_rows(rows, lived, at[kept], np.searchsorted(arc, at[kept]) - 1, settings)
+    joins = smooth_joins(space, at, noise, settings.primitives)
+    return _with_joins(corners, space, joins, np.maximum(np.searchsorted(arc, space.arc_length[joins]) - 1, 0))
 
 
 def thresholds(sigmas: Floats, noise: float, step: float, settings: LandmarkSettings) -> Floats:
@@ -103,7 +111,30 @@ def place_corners(points: Floats, arc: Floats, at: Floats, noise: float, limits:
     return rows[:found], kept[:found]
 
 
-def _from_rows(rows: Floats, lived: Floats, places: Integers) -> ChainKnots:
-    covariances = rows[:, [2, 3, 3, 4]].reshape(-1, 2, 2)
-    headings = np.pi - np.mod(np.pi - rows[:, 6], 2 * np.pi)
-    return ChainKnots(rows[:, :2], rows[:, 5], headings, covariances, lived, places)
+def _from_rows(rows: Floats, lived: Floats, at: Floats, places: Integers, settings: LandmarkSettings) -> ChainKnots:
+    return ChainKnots(
+        kinds=classify(rows[:, 5], at, settings.primitives),
+        positions=rows[:, :2],
+        turns=rows[:, 5],
+        headings=np.pi - np.mod(np.pi - rows[:, 6], 2 * np.pi),
+        covariances=rows[:, [2, 3, 3, 4]].reshape(-1, 2, 2),
+        scales=lived,
+        places=places,
+    )
+
+
+def _with_joins(corners: ChainKnots, space: ScaleSpace, joins: Integers, places: Integers) -> ChainKnots:
+    """The corners and the smooth joins, which turn nothing and are known to the coarsest sigma."""
+    if not joins.size:
+        return corners
+    along = space.points[joins + 1] - space.points[joins - 1]
+    sigma = space.sigmas[-1]
+    return ChainKnots(
+        kinds=np.append(corners.kinds, np.full(joins.size, Primitive.SMOOTH_JOIN, dtype=np.uint8)),
+        positions=np.vstack([corners.positions, space.points[joins]]),
+        turns=np.append(corners.turns, np.zeros(joins.size)),
+        headings=np.append(corners.headings, np.arctan2(along[:, 0], -along[:, 1])),
+        covariances=np.concatenate([corners.covariances, np.tile(sigma**2 * np.eye(2), (joins.size, 1, 1))]),
+        scales=np.vstack([corners.scales, np.full((joins.size, 2), sigma)]),
+        places=np.append(corners.places, places),
+    )

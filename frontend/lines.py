@@ -78,7 +78,7 @@ def wall_lines(points: Floats, readings: Floats, real: Booleans, noise: Floats) 
     stop = np.where(np.roll(readings, -1) <= readings, stop + n, stop)
     chosen = np.flatnonzero(real & (stop - start >= 2))
     twice = np.vstack([points, points])
-    fits = np.array([fit_line(twice, start[k], stop[k] + 1, float(noise[start[k] % n])) for k in chosen]).reshape(-1, 6)
+    fits = _fit_lines(twice, start[chosen], stop[chosen] + 1, noise)
     middle, along = fits[:, :2], np.column_stack([np.cos(fits[:, 2]), np.sin(fits[:, 2])])
     ends = np.stack([twice[start[chosen]], twice[stop[chosen]]], axis=1)
     feet = np.sum((ends - middle[:, None]) * along[:, None], axis=2)
@@ -89,3 +89,12 @@ def wall_lines(points: Floats, readings: Floats, real: Booleans, noise: Floats) 
         angle_spread=np.sqrt(fits[:, 4]),
         readings=np.column_stack([start[chosen] % n, stop[chosen] % n]),
     )
+
+
+@compiled
+def _fit_lines(points: Floats, starts: Integers, stops: Integers, noise: Floats) -> Floats:
+    """The fitted line (l, 6) through each stretch of the points."""
+    fits = np.empty((starts.size, 6))
+    for k in range(starts.size):
+        fits[k] = fit_line(points, starts[k], stops[k], noise[starts[k] % noise.size])
+    return fits

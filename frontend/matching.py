@@ -12,7 +12,7 @@ from frontend.agreement import agreement
 from frontend.constellations import consistent, constellations
 from frontend.joint_compatibility import JointPairs, most_joint_pairs
 from frontend.pair_pose import PairedKnots, pose_of_pairs
-from frontend.primal_sketch import KnotKind, PrimalSketch
+from frontend.primal_sketch import PrimalSketch
 from frontend.rigid_motion import wrap
 from frontend.scan import Booleans, Floats, Integers
 
@@ -119,10 +119,12 @@ def same_kind(
 ) -> Booleans:
     """Whether knots (i,) and (j,) can be one: surface on a common side, the same turn where both walls were seen.
 
-    A jamb shows one wall of a convex corner, whose other wall another place may see. A bump is only ever a bump.
+    A jamb shows one wall of a convex corner, whose other wall another place may see. A lone bump, which shows ends
+    but no wall, is only ever a bump.
     """
     sides_a, sides_b = _surface_sides(fixed)[a], _surface_sides(moving)[b]
-    bump_a, bump_b = fixed.kinds[a] == KnotKind.BUMP, moving.kinds[b] == KnotKind.BUMP
+    bump_a = np.all(sides_a, axis=1) & np.all(np.isnan(fixed.walls[a]), axis=1)
+    bump_b = np.all(sides_b, axis=1) & np.all(np.isnan(moving.walls[b]), axis=1)
     corner_a, corner_b = np.all(sides_a, axis=1), np.all(sides_b, axis=1)
     turn_a, turn_b = fixed.turns[a], moving.turns[b]
     same_turn = np.abs(wrap(turn_a[:, None] - turn_b[None])) < 2 * settings.wall_gate

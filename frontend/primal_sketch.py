@@ -15,18 +15,19 @@ from frontend.jambs import JambSettings, find_jambs
 from frontend.landmarks import LandmarkSettings, chain_knots
 from frontend.lines import Lines, wall_lines
 from frontend.polyline import bounded_vertices
+from frontend.primitives import Primitive
 from frontend.scan import Booleans, Floats, Integers
 
 
 class KnotKind(IntEnum):
-    """The primitive a knot belongs to; GEOMETRY only bounds the polyline, JAMB is where a near surface ends."""
+    """The primitive a knot belongs to; JAMB is where a near surface ends, GEOMETRY only bounds the polyline."""
 
-    CORNER = 0
-    SMOOTH_JOIN = 1
-    END = 2
-    CRANK = 3
-    BUMP = 4
-    DENT = 5
+    CORNER = Primitive.CORNER
+    SMOOTH_JOIN = Primitive.SMOOTH_JOIN
+    END = Primitive.END
+    CRANK = Primitive.CRANK
+    BUMP = Primitive.BUMP
+    DENT = Primitive.DENT
     JAMB = 6
     GEOMETRY = 7
 
@@ -70,7 +71,8 @@ def sketch(contour: Contour, settings: SketchSettings) -> PrimalSketch:
     vertices = contour.vertices
     points, edges = contour.points[vertices], contour.edge_kinds[vertices]
     noise = contour.spread[vertices]
-    found = [_corners(points, noise, chain, settings) for chain in chains(edges)]
+    long_enough = 2 * settings.landmarks.least_points
+    found = [_corners(points, noise, chain, settings) for chain in chains(edges) if chain.size >= long_enough]
     found.append(_jambs(contour, points, noise, edges, settings))
     landmarks = _joined(found)
     geometry = _geometry(contour, points, edges, landmarks, settings)
@@ -85,7 +87,7 @@ def sketch(contour: Contour, settings: SketchSettings) -> PrimalSketch:
         walls=knots.walls,
         scales=knots.scales,
         covariances=knots.covariances,
-        landmark=knots.kinds != KnotKind.GEOMETRY,
+        landmark=~np.isin(knots.kinds, (KnotKind.GEOMETRY, KnotKind.SMOOTH_JOIN)),
         real=_real_edges(knots.readings, edges),
         readings=knots.readings,
         lines=wall_lines(points, knots.readings, _real_edges(knots.readings, edges), noise),
@@ -131,7 +133,7 @@ def _corners(points: Floats, noise: Floats, chain: Integers, settings: SketchSet
     knots = chain_knots(points[chain], float(np.mean(noise[chain])), settings.landmarks)
     before = knots.headings - 0.5 * np.pi - 0.5 * knots.turns
     return _Knots(
-        kinds=np.full(knots.turns.size, KnotKind.CORNER, dtype=np.uint8),
+        kinds=knots.kinds,
         positions=knots.positions,
         turns=knots.turns,
         headings=knots.headings,
