@@ -9,6 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import metadata
 
+from frontend.registration import RegistrationError, load_open3d
+
 # open3d links against these; every desktop has them, a bare server does not.
 SYSTEM_LIBRARIES = {"libGL.so.1": "libgl1", "libEGL.so.1": "libegl1", "libX11.so.6": "libx11-6"}
 DISTRIBUTIONS = ("gtsam", "numpy", "scipy", "shapely", "filterpy", "numba", "matplotlib", "typer", "rich")
@@ -79,8 +81,13 @@ def _distribution(name: str) -> Finding:
 
 def _registration() -> Finding:
     installed = [d for d in metadata.distributions() if d.metadata["Name"] in REGISTRATION_DISTRIBUTIONS]
-    says = installed[0].version if installed else "not installed: registration will not work, the rest will"
-    return Finding("open3d", bool(installed), False, says)
+    if not installed:
+        return Finding("open3d", False, False, "not installed: registration will not work, the rest will")
+    try:
+        load_open3d()
+    except RegistrationError as reason:
+        return Finding("open3d", False, False, str(reason))
+    return Finding("open3d", True, False, installed[0].version)
 
 
 def _system_libraries() -> Finding:

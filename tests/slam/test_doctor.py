@@ -2,6 +2,7 @@
 
 import pytest
 
+from frontend.registration import RegistrationError
 from slam import doctor
 
 
@@ -16,6 +17,15 @@ def test_a_missing_library_is_named_with_its_remedy(monkeypatch: pytest.MonkeyPa
     assert not finding.in_order
     assert not finding.needed
     assert "apt-get install libnobody9" in finding.says
+
+
+def test_a_registration_that_cannot_load_says_why_and_the_rest_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse() -> None:
+        raise RegistrationError("open3d cannot be loaded (libGL.so.1)")
+
+    monkeypatch.setattr(doctor, "load_open3d", refuse)
+    finding = next(finding for finding in doctor.examine() if finding.subject == "open3d")
+    assert finding == doctor.Finding("open3d", False, False, "open3d cannot be loaded (libGL.so.1)")
 
 
 def test_missing_libraries_are_fetched_only_by_root_and_after_a_fresh_list(monkeypatch: pytest.MonkeyPatch) -> None:
