@@ -51,8 +51,8 @@ def objects_in(free: MultiPolygon, edges: tuple[MapEdge, ...], settings: ObjectS
     holes = [Polygon(ring) for part in free.geoms for ring in part.interiors]
     things = [hole for hole in holes if hole.area <= settings.largest and not _is_wall(hole, settings)]
     tree = shapely.STRtree([shapely.LineString([edge.start, edge.end]) for edge in edges])
-    judged = [_judged(thing, _edges_of(thing, tree, edges), settings) for thing in things]
-    pockets = [_judged(pocket, _edges_of(pocket, tree, edges), settings) for pocket in _pockets(free, settings)]
+    judged = [_judged(thing, tree, edges, settings) for thing in things]
+    pockets = [_judged(pocket, tree, edges, settings) for pocket in _pockets(free, settings)]
     return tuple(judged + [pocket for pocket in pockets if pocket.inferred])
 
 
@@ -62,17 +62,13 @@ def _is_wall(hole: Polygon, settings: ObjectSettings) -> bool:
     return length > settings.longest and hole.area / length < settings.wall
 
 
-def _edges_of(thing: Polygon, tree: shapely.STRtree, edges: tuple[MapEdge, ...]) -> list[MapEdge]:
-    """The map's edges that run along the thing's outline."""
-    near = tree.query(thing.exterior.buffer(1e-4), predicate="covers")
-    return [edges[int(i)] for i in near]
-
-
-def _judged(thing: Polygon, around: list[MapEdge], settings: ObjectSettings) -> Obstacle:
+def _judged(thing: Polygon, tree: shapely.STRtree, edges: tuple[MapEdge, ...], settings: ObjectSettings) -> Obstacle:
     """The object with what speaks for it: seen surface, or else the views' lines of sight around it."""
-    real = [edge for edge in around if edge.kind == MapEdgeKind.REAL]
-    seen = sum(float(np.hypot(e.end[0] - e.start[0], e.end[1] - e.start[1])) for e in real)
-    views = np.unique(np.concatenate([np.empty(0, dtype=np.int64), *(edge.views for edge in real)]))
+    rim = thing.exterior.buffer(1e-3)
+    near = [(edges[int(i)], tree.geometries[int(i)].intersection(rim).length) for i in tree.query(rim)]
+    along = [(edge, length) for edge, length in near if length > 0.01]
+    seen = sum(length for edge, length in along if edge.kind == MapEdgeKind.REAL)
+    views = np.unique(np.concatenate([np.empty(0, dtype=np.int64), *(edge.views for edge, _ in along)]))
     return Obstacle(thing, seen < settings.real_share * thing.exterior.length, len(views), views)
 
 

@@ -36,7 +36,7 @@ class MergeSettings:
     piece: float = 0.10  # larger samples long edges more sparsely
     spacing: float = 0.05  # larger settles faster, on fewer samples
     finest: float = 0.01  # no spread is believed below this; larger blurs good sensors
-    wall_strip: float = 0.06  # larger holds walls better against misplaced views, and closes thinner slits
+    wall_strip: float = 0.06  # larger holds walls better and believes vaguer surfaces, and closes thinner slits
     settling: SettleSettings = field(default_factory=SettleSettings)
     faces: FaceSettings = field(default_factory=FaceSettings)
     reading: ReadingSettings = field(default_factory=ReadingSettings)
@@ -117,7 +117,10 @@ class Merger:
     def _ballot(self, surfaces: Surfaces, ring: Floats, origin: Floats) -> Ballot:
         """Votes on whole millimetres, so that a view that hardly moved need not vote again."""
         ring = np.round(ring, 3)
-        return ballot_of(ring, surfaces.real, origin, self.settings.wall_strip, self.settings.cell)
+        sure = surfaces.spread <= self.settings.wall_strip  # else the wall may stand anywhere, also before the strip
+        return ballot_of(
+            ring, surfaces.real & sure & np.roll(sure, -1), origin, self.settings.wall_strip, self.settings.cell
+        )
 
     def _vote_again(self, poses: Floats, faces: WallFaces) -> None:
         """Every view votes with its measured corners on the fused faces; only changed ballots are cast anew."""
@@ -142,7 +145,7 @@ class Merger:
             np.repeat(np.arange(len(surfaces)), [len(s.corner) for s in surfaces]),
             np.concatenate([s.sigma for s in surfaces]),
             np.concatenate([s.weight for s in surfaces]),
-            np.concatenate([s.sure for s in surfaces]),
+            np.concatenate([s.sure & (s.sigma <= self.settings.wall_strip) for s in surfaces]),
         )
 
 

@@ -20,13 +20,15 @@ Ints = NDArray[np.int64]
 class Surfaces:
     """The measured corners of one view's ring, in the robot's frame.
 
-    ring: (m, 2) the boundary, its long real edges cut into pieces; real: (m,) whether edge i to i + 1 is real.
+    ring: (m, 2) the boundary, its long real edges cut into pieces; spread: (m,) metres, of its corners along their
+    beams; real: (m,) whether edge i to i + 1 is real.
     corner: (n,) which corners of the ring were measured; normals: (n, 2) towards the sensor;
     weight: (n,) metres of surface the corner stands for; sigma: (n,) its standard deviation along the beam, metres;
     sure: (n,) whether the stroke is long enough, against its noise, to have a direction.
     """
 
     ring: Floats
+    spread: Floats
     real: NDArray[np.bool_]
     corner: Ints
     normals: Floats
@@ -46,7 +48,7 @@ def surfaces_of(view: View, piece: float, finest: float) -> Surfaces:
     normals = normals[corner] * -np.sign(np.sum(normals[corner] * beam, axis=1, keepdims=True) + 1e-12)
     edge = np.where(real, np.linalg.norm(np.roll(ring, -1, axis=0) - ring, axis=1), 0.0)
     weight = 0.5 * (edge + np.roll(edge, 1))
-    return Surfaces(ring, real, corner, normals, weight[corner], spread[corner], sure[corner])
+    return Surfaces(ring, spread, real, corner, normals, weight[corner], spread[corner], sure[corner])
 
 
 def _cut_long_edges(view: View, piece: float) -> tuple[Floats, NDArray[np.bool_], Floats]:

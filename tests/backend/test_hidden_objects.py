@@ -54,3 +54,8 @@ def test_a_round_obstacle_seen_from_three_sides_becomes_one_closed_object() -> N
     assert thing.support == 3
     assert thing.outline.intersection(pillar).area / thing.outline.union(pillar).area > 0.75
     assert len(room_map.free.geoms) == 1
+
+
+def test_the_inside_of_a_wall_between_two_rooms_is_no_hidden_object() -> None:
+    free = as_polygons(box(0, 0, 3, 4).union(box(3.1, 0, 6, 4)).union(box(2.9, 1.5, 3.2, 2.4)))
+    assert objects_in(free, labelled(free, MapEdgeKind.REAL), SETTINGS) == ()

@@ -1,5 +1,7 @@
 """Claims of the merge on plans whose truth is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -50,3 +52,13 @@ def test_a_view_is_added_only_once_and_moved_only_after_that() -> None:
     merger.add(view, np.zeros(3), 3)
     with pytest.raises(MergingError, match="view 3 is in the map already"):
         merger.add(view, np.zeros(3), 3)
+
+
+def test_a_surface_less_sure_than_the_strip_is_thick_votes_for_no_wall() -> None:
+    rng = np.random.default_rng(6)
+    plan = empty_room()
+    sure = view_of(plan, np.array([1.0, 1.0, 0.0]), Rays(), rng)
+    vague = replace(sure, spread=np.full_like(sure.spread, 0.2), boundary=0.9 * sure.boundary)
+    pose = np.array([1.0, 1.0, 0.0])
+    room_map = merge_views([sure, vague, vague], np.array([pose, pose, pose]))
+    assert room_map.free.symmetric_difference(plan.free).area < 0.02 * plan.free.area

@@ -31,7 +31,9 @@ def shrunk_union(views: list[View], poses: Floats) -> MultiPolygon:
         ring = place(view.boundary, pose)
         real = view.edges == EdgeKind.REAL
         walls = shapely.linestrings(np.stack([ring[real], np.roll(ring, -1, axis=0)[real]], axis=1))
-        shapes.append(shapely.make_valid(Polygon(ring)).difference(shapely.union_all(shapely.buffer(walls, BAND, quad_segs=2))))
+        shapes.append(
+            shapely.make_valid(Polygon(ring)).difference(shapely.union_all(shapely.buffer(walls, BAND, quad_segs=2)))
+        )
     return _union(shapes)
 
 
