@@ -121,7 +121,7 @@ def _meets(faces: Floats, points: Floats, box: Floats, wall: Floats, margin: flo
     x, y = (y0 - y1) / length, (x1 - x0) / length
     offset = x * x0 + y * y0
     reach = box[3] * abs(x) + box[4] * abs(y) + margin
-    return offset <= _support(points, x, y) + reach and -offset <= _support(points, -x, -y) + reach
+    return bool(offset <= _support(points, x, y) + reach and -offset <= _support(points, -x, -y) + reach)
 
 
 @compiled

@@ -60,7 +60,8 @@ def _boundary(free: Polygon | MultiPolygon) -> STRtree:
     """All boundary edges as separate line strings."""
     rings = shapely.get_rings(shapely.get_parts(free))
     corners = [shapely.get_coordinates(ring) for ring in rings]
-    return STRtree(shapely.linestrings(np.concatenate([np.stack([c[:-1], c[1:]], axis=1) for c in corners])))
+    edges = np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in corners])
+    return STRtree(np.asarray(shapely.linestrings(edges)))
 
 
 def _placed(part: Floats, poses: Floats) -> Floats:

@@ -93,7 +93,7 @@ def _cuts(spine: Floats, ends: Floats) -> Floats:
 
 @compiled
 def _stands_free(spine: Floats, low: float, high: float, ends: Floats, share: float) -> bool:
-    """Whether, somewhere between two positions, no wall is nearer than `share` of the distance of the cone's own two."""
+    """Whether somewhere between two positions no wall is nearer than `share` of the distance of the cone's own."""
     for sample in range(SAMPLES):
         position = low + (high - low) * (sample + 0.5) / SAMPLES
         x, y = spine[0] + position * spine[2], spine[1] + position * spine[3]

@@ -4,16 +4,20 @@ The robot translates along spines and turns where they cross. The planner is a h
 not, and never says that there is none.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from planners.cone_outlines import cone_outlines
 from planners.freeways import facing_pairs, spines
 from planners.headings import Arc, least_turning
+from planners.lost_headings import why_not
+from planners.motion import Course, clearance_of, course_of
 from planners.path import Answer, Cone, Path
 from planners.poses import Pose, standing
 from planners.robot import Robot
+from planners.shortcut import shortened
 from planners.slices import Body, Slices, slices_of
 from planners.spine_graph import SpineGraph, graph_of
 from planners.spine_search import Route, route
@@ -29,25 +33,32 @@ class ConesSettings:
 
     slice_length: float = 0.5  # in widths of the robot; larger is faster to prepare and loses orientations
     crowding: float = 0.2  # a cone needs a place where no wall is nearer than this share of its own; larger: fewer
+    caution: float = 3.0  # extra cost per metre in the tightest passages; larger goes farther to stay clear of walls
     entrances: int = 16  # spines tried from start and goal; larger finds more and asks more time of every query
+    shortcuts: int = (
+        0  # straight motions tried to shorten a path; any leaves the middle of free space, larger is shorter
+    )
+    turn_cost: float = 0.1  # metres per radian while shortening; larger avoids turning
 
 
 @dataclass(frozen=True, eq=False)
 class Cones:
-    """A world prepared for one robot."""
+    """A world prepared for one robot. runs (k, 8): the spines, rows of `freeways.spines`."""
 
     world: World
     robot: Robot
     settings: ConesSettings
     body: Body
-    spines: Floats
+    runs: Floats
     slices: Slices
     graph: SpineGraph
+    course: Course
 
 
 def plan(world: World, robot: Robot, start: Pose, goal: Pose, settings: ConesSettings) -> Answer:
     """A path of `robot` in `world` from `start` to `goal` (3,) along the spines of cones, or why none was found."""
-    return query(prepare(world, robot, settings), start, goal)
+    cones = prepare(world, robot, settings)
+    return replace(query(cones, start, goal), cones=drawn(cones))
 
 
 def prepare(world: World, robot: Robot, settings: ConesSettings) -> Cones:
@@ -57,18 +68,41 @@ def prepare(world: World, robot: Robot, settings: ConesSettings) -> Cones:
     pairs = facing_pairs(body.ends, world.normals, world.offsets)
     runs = _distinct(spines(pairs, body.ends, lines, robot.width, settings.crowding), world.grid)
     slices, kept = slices_of(runs, body)
-    return Cones(world, robot, settings, body, runs[kept], slices, graph_of(slices))
+    return Cones(
+        world, robot, settings, body, runs[kept], slices, graph_of(slices, settings.caution), course_of(world, robot)
+    )
+
+
+def drawn(cones: Cones) -> tuple[Cone, ...]:
+    """The cones with their outlines, for figures."""
+    lines = np.column_stack([cones.world.normals, cones.world.offsets])
+    return cone_outlines(cones.slices, cones.body.ends, lines, cones.runs[:, 4:6])
 
 
 def query(cones: Cones, start: Pose, goal: Pose) -> Answer:
-    """A path from `start` to `goal` (3,) with a heading, nan or None for any; or why none was found."""
+    """A path from `start` to `goal` (3,) with a heading, nan or None for any; or why none was found.
+
+    Raises PlanningError where the robot cannot stand.
+    """
     begin = standing(cones.world, cones.robot, start, "start")
     end = standing(cones.world, cones.robot, goal, "goal")
-    chain = _straight(cones, begin, end) or _through(cones, begin, end)
-    if chain is None:
-        return Answer("not found", "no way along the spines was found", cones=())
-    poses = _poses(chain)
-    return Answer("path", "a path along spines was found", Path(poses, 0.0, "legal orientations"))
+    through = _through(cones, begin, end)
+    chains = [chain for chain in (_straight(cones, begin, end), through) if isinstance(chain, Chain)]
+    if not chains:
+        reason = why_not(cones.slices, cones.graph, np.asarray(through), end)
+        return Answer("not found", f"no way along {len(cones.runs)} cones: {reason}")
+    return _found(cones, _poses(min(chains, key=lambda chain: chain.cost)))
+
+
+def _found(cones: Cones, poses: Floats) -> Answer:
+    """The path, shortened if the settings say so."""
+    settings, grid = cones.settings, cones.world.grid
+    if settings.shortcuts:
+        poses = shortened(cones.course, poses, grid, settings.turn_cost, settings.shortcuts)
+    clearance = max(clearance_of(cones.course, poses, 1e-3 * cones.robot.reach), 0.0)
+    certificate = "on every piece the heading is legal, or the straight motion is proved by hull and sag"
+    reason = f"a path of {len(poses)} poses along {len(cones.runs)} cones"
+    return Answer("path", reason, Path(poses, clearance, certificate))
 
 
 def _body(world: World, robot: Robot, settings: ConesSettings) -> Body:
@@ -76,7 +110,7 @@ def _body(world: World, robot: Robot, settings: ConesSettings) -> Body:
     polar = np.column_stack([np.hypot(corners[:, 0], corners[:, 1]), np.arctan2(corners[:, 1], corners[:, 0])])
     ends = world.edges.reshape(-1, 4).copy()
     reach, step = robot.reach + world.grid, settings.slice_length * robot.width
-    return Body(polar, robot.radius, ends, world.grid, reach, step)
+    return Body(polar, robot.radius, ends, world.grid, reach, robot.width, step, settings.caution)
 
 
 def _distinct(runs: Floats, grid: float) -> Floats:
@@ -94,27 +128,27 @@ def _straight(cones: Cones, begin: Floats, end: Floats) -> Chain | None:
         for turned, _, arc_end in common(np.array([arrived]), here):
             last: Arc = (float(end[2]), float(end[2])) if np.isfinite(end[2]) else arc_end
             points = (*chain.points, end[:2], end[:2])
-            return Chain(points, (*chain.legs, turned, last), (*chain.turns, arrived, arc_end))
+            return Chain(points, (*chain.legs, turned, last), (*chain.turns, arrived, arc_end), chain.cost)
     return None
 
 
-def _through(cones: Cones, begin: Floats, end: Floats) -> Chain | None:
-    """The shortest way through the graph of spines."""
+def _through(cones: Cones, begin: Floats, end: Floats) -> Chain | NDArray[np.bool_]:
+    """The best way through the graph of spines; without one, which nodes (n,) can be reached."""
     total, most = len(cones.graph.arcs), cones.settings.entrances
-    into, out = _shortest(cones, begin, most), _shortest(cones, end, most)
+    into, out = _entries(cones, begin, most), _entries(cones, end, most)
     entry, leave = np.full(total, np.inf), np.full(total, np.inf)
     for lengths, chains in ((entry, into), (leave, out)):
         for node, chain in chains.items():
-            lengths[node] = chain.length
+            lengths[node] = chain.cost
     found = route(cones.graph, entry, leave, end[:2])
-    return _joined(cones.graph, into, found, out) if isinstance(found, Route) else None
+    return _joined(cones.graph, into, found, out) if isinstance(found, Route) else found
 
 
-def _shortest(cones: Cones, pose: Floats, most: int) -> dict[int, Chain]:
-    """The shortest way in for every node that a pose reaches."""
+def _entries(cones: Cones, pose: Floats, most: int) -> dict[int, Chain]:
+    """The cheapest way in for every node that a pose reaches."""
     best: dict[int, Chain] = {}
     for node, chain in entrances(cones.body, cones.slices, cones.graph, pose, most):
-        if node not in best or chain.length < best[node].length:
+        if node not in best or chain.cost < best[node].cost:
             best[node] = chain
     return best
 
@@ -125,7 +159,8 @@ def _joined(graph: SpineGraph, into: dict[int, Chain], found: Route, out: dict[i
     legs: list[Arc] = [(float(low), float(high)) for low, high in graph.edge_arcs[found.edges]]
     turns: list[Arc] = [(float(low), float(high)) for low, high in graph.arcs[found.nodes]]
     points = (*first.points, *between, *last.points[1:])
-    return Chain(points, (*first.legs, *legs, *last.legs), (*first.turns, *turns, *last.turns))
+    cost = first.cost + float(graph.costs[found.edges].sum()) + last.cost
+    return Chain(points, (*first.legs, *legs, *last.legs), (*first.turns, *turns, *last.turns), cost)
 
 
 def _poses(chain: Chain) -> Floats:
@@ -135,4 +170,4 @@ def _poses(chain: Chain) -> Floats:
     poses = np.concatenate([np.column_stack([points[:-1], headings]), np.column_stack([points[1:], headings])], axis=1)
     flat = poses.reshape(-1, 3)
     moved = np.concatenate([[True], np.abs(np.diff(flat, axis=0)).max(axis=1) > 0])
-    return flat[moved]
+    return np.asarray(flat[moved])

@@ -24,7 +24,7 @@ def least_turning(legs: Sequence[Arc], turns: Sequence[Arc]) -> Floats:
         if max(low, least) <= min(high, most):
             low, high = max(low, least), min(high, most)
             continue
-        # No heading serves this leg too: settle the legs so far at the near end, and go on from the next one's near end.
+        # No heading serves this leg too: settle those so far at the near end, go on from the next one's near end.
         headings[begin:k] = high if least > high else low
         low = high = least if least > high else most
         begin = k

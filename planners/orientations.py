@@ -141,7 +141,7 @@ def _room_before(piece: Floats, wall: Floats, normal: Floats, reach: float) -> f
     rise = normal[0] * wall[2] + normal[1] * wall[3] - front
     top = max(front + enter * rise, front + leave * rise)
     here = min(normal[0] * piece[0] + normal[1] * piece[1], normal[0] * piece[2] + normal[1] * piece[3])
-    return here - top
+    return float(here - top)
 
 
 @compiled

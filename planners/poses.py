@@ -40,7 +40,7 @@ def standing(world: World, robot: Robot, pose: Pose, name: str) -> Floats:
 
 
 def _check_outline(world: World, robot: Robot, pose: Floats, place: str) -> None:
-    outside = robot.at(pose).difference(world.free)
+    outside = shapely.difference(robot.at(pose), world.free)
     if not outside.is_empty:
         depth = shapely.distance(shapely.points(shapely.get_coordinates(outside)), world.free).max()
         degrees = np.degrees(pose[2])

@@ -10,6 +10,7 @@ from shapely import MultiPoint, Polygon
 
 Floats = NDArray[np.float64]
 
+CHORDS = 4  # per right angle, around the corners of a polygon that is grown
 SYMMETRIES = (12, 10, 9, 8, 7, 6, 5, 4, 3, 2)
 
 
@@ -70,7 +71,7 @@ class Robot:
         """The narrowest straight passage that the outline fits through."""
         if self.is_disc:
             return 2 * self.radius
-        hull = np.asarray(MultiPoint(self.corners).convex_hull.exterior.coords)
+        hull = shapely.get_coordinates(MultiPoint(self.corners).convex_hull)
         along = np.diff(hull, axis=0)
         normals = np.stack([-along[:, 1], along[:, 0]], axis=1) / np.linalg.norm(along, axis=1, keepdims=True)
         return float(np.ptp(hull @ normals.T, axis=0).min()) + 2 * self.radius
@@ -88,6 +89,13 @@ class Robot:
     def scaled(self, factor: float) -> "Robot":
         """The same outline, larger or smaller."""
         return Robot(tuple(part * factor for part in self.parts), self.radius * factor)
+
+    def grown(self, distance: float) -> "Robot":
+        """The outline grown by `distance` on all sides; around the corners of polygons in chords inside the arcs."""
+        if self.is_disc or distance == 0:
+            return Robot(self.parts, self.radius + distance)
+        hulls = [Polygon(part).buffer(distance, quad_segs=CHORDS) for part in self.parts]
+        return Robot(tuple(np.asarray(shapely.orient_polygons(hull).exterior.coords)[:-1] for hull in hulls))
 
     def at(self, pose: Floats) -> shapely.Geometry:
         """The outline placed at `pose` (3,); a disc as the polygon inside it of 128 corners."""
@@ -125,4 +133,4 @@ def _convex_parts(outline: Floats) -> list[Floats]:
     hull = polygon.convex_hull
     convex = hull.area - polygon.area <= 1e-12 * hull.area
     pieces = [hull] if convex else list(shapely.constrained_delaunay_triangles(polygon).geoms)
-    return [np.asarray(shapely.orient_polygons(piece).exterior.coords)[:-1] for piece in pieces]
+    return [shapely.get_coordinates(shapely.orient_polygons(piece))[:-1] for piece in pieces]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planners.compiled import compiled
-from planners.orientations import legal_along
+from planners.orientations import legal_along, nearest
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -20,7 +20,8 @@ class Slices(NamedTuple):
 
     first (k + 1,): rows of cone k are first[k] to first[k + 1]. pieces (n, 4): both ends of a slice on the spine.
     legal (n, INTERVALS, 2) and counts (n,): its legal headings, never none. places (n,): twice the cone's number plus
-    where the slice begins on the spine, 0 … 1; increasing.
+    where the slice begins on the spine, 0 … 1; increasing. tightness (n,): 0 where the walls are as far as the robot is
+    wide, 1 where one is half as far.
     """
 
     first: NDArray[np.int64]
@@ -28,18 +29,23 @@ class Slices(NamedTuple):
     legal: Floats
     counts: Ints
     places: Floats
+    tightness: Floats
 
 
 class Body(NamedTuple):
     """A robot among walls. polar (v, 2): distance and angle of its corners; radius it is rounded by; ends (m, 4) of
-    the walls; margin to keep from them; reach of the robot with the margin; step: length of a slice."""
+    the walls; margin to keep from them; reach of the robot with the margin, and its least
+    width; step: length of a slice; caution: extra cost of a metre where it is
+    tightest."""
 
     polar: Floats
     radius: float
     ends: Floats
     margin: float
     reach: float
+    width: float
     step: float
+    caution: float
 
 
 @compiled
@@ -118,34 +124,40 @@ def _grown(spine: Floats, near: Floats, body: Body) -> tuple[Floats, Floats]:
 
 
 @compiled
-def sliced(spines: Floats, body: Body) -> tuple[Ints, Floats, Floats]:
-    """Slices per spine (k,), their pieces (n, 4) and legal headings (n, INTERVALS, 2).
+def sliced(spines: Floats, body: Body) -> tuple[Ints, Floats, Floats, Floats]:
+    """Slices per spine (k,), their pieces (n, 4), legal headings (n, INTERVALS, 2) and room to the nearest wall (n,).
 
     spines: rows (k, 8) of `freeways.spines`.
     """
-    pieces, legal, used = np.empty((1024, 4)), np.empty((1024, INTERVALS, 2)), 0
+    pieces, legal, rooms, used = np.empty((1024, 4)), np.empty((1024, INTERVALS, 2)), np.empty(1024), 0
     sizes = np.zeros(spines.shape[0], np.int32)
     for k in range(spines.shape[0]):
-        places, headings = _grown(spines[k], _near(spines[k], body.ends, body.reach), body)
+        near = _near(spines[k], body.ends, body.reach + body.width)
+        places, headings = _grown(spines[k], near, body)
         while used + places.shape[0] > pieces.shape[0]:
             pieces, legal = np.concatenate((pieces, pieces)), np.concatenate((legal, legal))
+            rooms = np.concatenate((rooms, rooms))
         for row in range(places.shape[0]):
             piece = _part(spines[k], places[row, 0], places[row, 1])
             for each in range(4):
                 pieces[used, each] = piece[each]
+            rooms[used] = body.width
+            for each in range(near.shape[0]):
+                rooms[used] = min(rooms[used], nearest(piece, near[each])[2])
             for each in range(INTERVALS):
                 legal[used, each, 0], legal[used, each, 1] = headings[row, each, 0], headings[row, each, 1]
             used += 1
         sizes[k] = places.shape[0]
-    return sizes, pieces[:used].copy(), legal[:used].copy()
+    return sizes, pieces[:used].copy(), legal[:used].copy(), rooms[:used].copy()
 
 
 def slices_of(spines: Floats, body: Body) -> tuple[Slices, NDArray[np.bool_]]:
     """The slices of all `spines` (k, 8), and which of them (k,) kept any."""
-    sizes, pieces, legal = sliced(spines, body)
+    sizes, pieces, legal, rooms = sliced(spines, body)
     first = np.concatenate([[0], np.cumsum(sizes[sizes > 0])]).astype(np.int64)
     counts = np.isfinite(legal[:, :, 0]).sum(axis=1).astype(np.int32)
     owner = np.repeat(np.arange(len(first) - 1), np.diff(first))
     begin, end = pieces[first[:-1], :2], pieces[first[1:] - 1, 2:]
     along = np.linalg.norm(pieces[:, :2] - begin[owner], axis=1) / np.linalg.norm(end - begin, axis=1)[owner]
-    return Slices(first, pieces, legal, counts, 2 * owner + along), sizes > 0
+    tightness = np.clip(2 - 2 * rooms / body.width, 0, 1)
+    return Slices(first, pieces, legal, counts, 2 * owner + along, tightness), sizes > 0

@@ -24,7 +24,7 @@ class SpineGraph(NamedTuple):
 
     stops (s, 3): cone, place (0 … 1) on its spine, slice; sorted by cone and place; stop_points (s, 2).
     first_stop (k + 1,) per cone, first_node (s + 1,) per stop. arcs (n, 2) of each node, node_stop (n,).
-    first_edge (n + 1,), targets (e,), lengths (e,), edge_arcs (e, 2).
+    first_edge (n + 1,), targets (e,), costs (e,) in metres, more where it is tight, edge_arcs (e, 2).
     """
 
     stops: Floats
@@ -35,7 +35,7 @@ class SpineGraph(NamedTuple):
     node_stop: Ints
     first_edge: Ints
     targets: Ints
-    lengths: Floats
+    costs: Floats
     edge_arcs: Floats
 
 
@@ -72,6 +72,15 @@ def run_between(slices: Slices, first: int, last: int) -> Floats:
 
 
 @compiled
+def _tightness(slices: Slices, first: int, last: int) -> float:
+    """The greatest tightness among the slices from row `first` to row `last`."""
+    greatest = 0.0
+    for row in range(first, last + 1):
+        greatest = max(greatest, slices.tightness[row])
+    return greatest
+
+
+@compiled
 def _nodes(slices: Slices, stops: Floats) -> tuple[Ints, Floats, Ints]:
     first_node = np.zeros(stops.shape[0] + 1, np.int32)
     arcs, owner, count = np.empty((8 * stops.shape[0] + 1, 2)), np.empty(8 * stops.shape[0] + 1, np.int32), 0
@@ -86,8 +95,8 @@ def _nodes(slices: Slices, stops: Floats) -> tuple[Ints, Floats, Ints]:
 
 
 @compiled
-def _runs(slices: Slices, stops: Floats, points: Floats, nodes: tuple[Ints, Floats, Ints]) -> Floats:
-    """Rows (e, 5) node, node, length, arc along spines, one direction each."""
+def _runs(slices: Slices, stops: Floats, points: Floats, nodes: tuple[Ints, Floats, Ints], caution: float) -> Floats:
+    """Rows (e, 5) node, node, cost, arc along spines, one direction each."""
     first_node, arcs = nodes[0], nodes[1]
     rows, count, both, thrice = np.empty((256, 5)), 0, np.empty((2, 2)), np.empty((2, 2))
     for stop in range(stops.shape[0] - 1):
@@ -95,6 +104,7 @@ def _runs(slices: Slices, stops: Floats, points: Floats, nodes: tuple[Ints, Floa
             continue
         legal = run_between(slices, int(stops[stop, 2]), int(stops[stop + 1, 2]))
         length = np.hypot(points[stop, 0] - points[stop + 1, 0], points[stop, 1] - points[stop + 1, 1])
+        length *= 1 + caution * _tightness(slices, int(stops[stop, 2]), int(stops[stop + 1, 2]))
         for run in range(legal.shape[0]):
             for a in range(first_node[stop], first_node[stop + 1]):
                 if shared(legal[run, 0], legal[run, 1], arcs[a, 0], arcs[a, 1], both) == 0:
@@ -136,8 +146,8 @@ def rows_at(slices: Slices, cones: NDArray[np.int64], places: Floats) -> NDArray
     return np.asarray(np.clip(rows, slices.first[cones], slices.first[cones + 1] - 1))
 
 
-def graph_of(slices: Slices) -> SpineGraph:
-    """All crossings of the cones' spines, and what joins them."""
+def graph_of(slices: Slices, caution: float) -> SpineGraph:
+    """All crossings of the cones' spines, and what joins them; a metre in the tightest slice costs 1 + `caution`."""
     sizes = np.diff(slices.first)
     spines = np.column_stack([slices.pieces[slices.first[:-1], :2], slices.pieces[slices.first[1:] - 1, 2:]])
     met = crossings(spines)
@@ -151,9 +161,10 @@ def graph_of(slices: Slices) -> SpineGraph:
     stops = np.column_stack([cones, places, rows])[order]
     points = spines[cones, :2] + places[:, None] * (spines[cones, 2:] - spines[cones, :2])
     nodes = _nodes(slices, stops)
-    edges = np.concatenate([_runs(slices, stops, points[order], nodes), _turns(twins, nodes)])
+    edges = np.concatenate([_runs(slices, stops, points[order], nodes, caution), _turns(twins, nodes)])
     first_stop = np.searchsorted(stops[:, 0], np.arange(len(sizes) + 1)).astype(np.int32)
-    return SpineGraph(stops, points[order], first_stop, *nodes, *_adjacency(edges, len(nodes[2])))
+    first_edge, targets, costs, edge_arcs = _adjacency(edges, len(nodes[2]))
+    return SpineGraph(stops, points[order], first_stop, *nodes, first_edge, targets, costs, edge_arcs)
 
 
 def _adjacency(edges: Floats, total: int) -> tuple[Ints, Ints, Floats, Floats]:

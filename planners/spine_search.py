@@ -43,7 +43,7 @@ def _search(
             best, last = cost[node] + leave[node], node
         for edge in range(graph.first_edge[node], graph.first_edge[node + 1]):
             target = graph.targets[edge]
-            reached = cost[node] + graph.lengths[edge]
+            reached = cost[node] + graph.costs[edge]
             if closed[target] == 0 and reached < cost[target]:
                 cost[target], by_edge[target], by_node[target] = reached, edge, node
                 point = graph.stop_points[graph.node_stop[target]]

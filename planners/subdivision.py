@@ -45,7 +45,7 @@ class Tree(NamedTuple):
 
 
 def plant(outer: Outline, core: Outline, walls: Walls, frame: Floats, limits: tuple[float, float, int]) -> Tree:
-    """The root boxes over `frame` (2, 3), low and high corner. limits: robot's reach, smallest width, number of boxes."""
+    """The root boxes over `frame` (2, 3), low and high. limits: robot's reach, smallest width, number of boxes."""
     reach, smallest, capacity = limits
     tree = Tree(
         np.empty((capacity, 3)),

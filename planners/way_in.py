@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from planners.circular import joined, shared
 from planners.compiled import compiled
 from planners.headings import Arc
-from planners.orientations import intersected, legal_along
+from planners.orientations import intersected, legal_along, nearest
 from planners.slices import Body, Slices
 from planners.spine_graph import SpineGraph, rows_at, run_between
 
@@ -18,20 +18,19 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """A piece of a path: points (k + 1) with a leg's arc between successive ones, and the arcs to turn in between."""
+    """A piece of a path: points (k + 1) with a leg's arc between successive ones, and the arcs to turn in between.
+
+    cost: metres, more where it is tight.
+    """
 
     points: tuple[Floats, ...]
     legs: tuple[Arc, ...]
     turns: tuple[Arc, ...]
-
-    @property
-    def length(self) -> float:
-        """Metres."""
-        return float(np.linalg.norm(np.diff(np.array(self.points), axis=0), axis=1).sum())
+    cost: float
 
     def reversed(self) -> "Chain":
         """The same piece the other way."""
-        return Chain(self.points[::-1], self.legs[::-1], self.turns[::-1])
+        return Chain(self.points[::-1], self.legs[::-1], self.turns[::-1], self.cost)
 
 
 @compiled
@@ -52,6 +51,16 @@ def _way(body: Body, piece: Floats) -> tuple[Floats, Floats, Floats]:
         if everywhere.shape[0] == 0:
             break
     return joined(everywhere), joined(first), joined(last)
+
+
+@compiled
+def _cost(body: Body, piece: Floats) -> float:
+    """Length of a piece (4,), times up to 1 + caution where it is tight."""
+    room = body.width
+    for k in range(body.ends.shape[0]):
+        room = min(room, nearest(piece, body.ends[k])[2])
+    tightness = min(max(2 - 2 * room / body.width, 0.0), 1.0)
+    return float(np.hypot(piece[2] - piece[0], piece[3] - piece[1]) * (1 + body.caution * tightness))
 
 
 def way(body: Body, begin: Floats, end: Floats) -> tuple[Floats, Floats, Floats]:
@@ -78,12 +87,13 @@ def departures(body: Body, pose: Floats, target: Floats) -> Iterator[tuple[Chain
         here = np.array([arc for arc in here if (pose[2] - arc[0]) % (2 * np.pi) <= arc[1] - arc[0]]).reshape(-1, 2)
     along, first, last = way(body, pose[:2], target)
     standing = (float(pose[2]), float(pose[2]))
+    cost = _cost(body, np.concatenate([pose[:2], target]))
     for turned, arc_here, arc_first in common(here, first):
         for leg, _, _ in common(along, np.array([arc_first])):
             for _, arc_last, _ in common(last, np.array([leg])):
                 begin = standing if np.isfinite(pose[2]) else arc_here
                 points = (pose[:2], pose[:2], pose[:2], target)
-                yield Chain(points, (begin, turned, leg), (arc_here, arc_first)), arc_last
+                yield Chain(points, (begin, turned, leg), (arc_here, arc_first), cost), arc_last
 
 
 def _feet(slices: Slices, point: Floats) -> tuple[Floats, Floats, Floats]:
@@ -107,19 +117,20 @@ def entrances(body: Body, slices: Slices, graph: SpineGraph, pose: Floats, most:
         for chain, arrived in departures(body, pose, feet[cone]):
             for crossed, _, arc_foot in common(np.array([arrived]), at_foot):
                 for stop in (*before, *after):
-                    yield from _along(slices, graph, (chain, arrived, crossed, arc_foot), (row, int(stop)))
+                    yield from _along(body, slices, graph, (chain, arrived, crossed, arc_foot), (row, int(stop)))
 
 
 def _along(
-    slices: Slices, graph: SpineGraph, foot: tuple[Chain, Arc, Arc, Arc], ends: tuple[int, int]
+    body: Body, slices: Slices, graph: SpineGraph, foot: tuple[Chain, Arc, Arc, Arc], ends: tuple[int, int]
 ) -> Iterator[tuple[int, Chain]]:
     """From the foot along its spine to a stop: every arc that is legal between, and the node it leads to."""
     (chain, arrived, crossed, arc_foot), (row, stop) = foot, ends
     other = int(graph.stops[stop, 2])
     legal = run_between(slices, min(row, other), max(row, other))
     nodes = slice(graph.first_node[stop], graph.first_node[stop + 1])
+    cost = chain.cost + _cost(body, np.concatenate([chain.points[-1], graph.stop_points[stop]]))
     for leg, _, _ in common(legal, np.array([arc_foot])):
         for _, arc_node, _ in common(graph.arcs[nodes], np.array([leg])):
             node = int(graph.first_node[stop] + np.flatnonzero((graph.arcs[nodes] == arc_node).all(axis=1))[0])
             points = (*chain.points, chain.points[-1], graph.stop_points[stop])
-            yield node, Chain(points, (*chain.legs, crossed, leg), (*chain.turns, arrived, arc_foot))
+            yield node, Chain(points, (*chain.legs, crossed, leg), (*chain.turns, arrived, arc_foot), cost)

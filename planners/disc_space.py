@@ -1,0 +1,63 @@
+"""Configuration space of a disc: heading makes no difference, so the exact shortest way is at hand."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from planners.box_space import ConfigurationSpaceSettings
+from planners.motion import Course, clearance_of, course_of
+from planners.path import Answer, Path
+from planners.robot import Robot
+from planners.visibility import Roadmap, eroded, roadmap_of, shortest
+from planners.world import World
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class DiscSpace:
+    """A world prepared for one disc. radius: the robot's and the clearance that is asked for."""
+
+    world: World
+    robot: Robot
+    settings: ConfigurationSpaceSettings
+    course: Course
+    roadmap: Roadmap
+    radius: float
+
+
+def prepare_disc(world: World, robot: Robot, settings: ConfigurationSpaceSettings) -> DiscSpace:
+    """The roadmap that all queries share."""
+    radius = robot.radius + settings.clearance
+    return DiscSpace(world, robot, settings, course_of(world, robot), roadmap_of(world, radius), radius)
+
+
+def query_disc(space: DiscSpace, start: Floats, goal: Floats) -> Answer:
+    """The shortest path between poses (3,), headings in [0, 2π) or nan; turning is done on the way."""
+    points = shortest(space.roadmap, start[:2], goal[:2])
+    if points is not None:
+        poses = _headed(points, start[2], goal[2])
+        clearance = max(clearance_of(space.course, poses, 1e-3 * space.radius), space.settings.clearance)
+        certificate = "every piece keeps more than the radius from every wall"
+        return Answer("path", f"the shortest path, by {len(points) - 2} corners", Path(poses, clearance, certificate))
+    if _joined(space, start[:2], goal[:2]):
+        reason = f"a passage is within 0.3 % of the radius of {space.radius:g} m: too close to call"
+        return Answer("undecided", reason)
+    return Answer("no path", f"places with {space.radius:g} m of room around them do not join start and goal")
+
+
+def _joined(space: DiscSpace, start: Floats, goal: Floats) -> bool:
+    """Whether the two lie in one component even among hulls that are a little too small: if not, there is no path."""
+    points = shapely.points([start, goal])
+    parts = eroded(space.world.free, space.radius - 8 * space.world.grid)
+    return any(shapely.covers(part.buffer(8 * space.world.grid), points).all() for part in parts)
+
+
+def _headed(points: Floats, first: float, last: float) -> Floats:
+    """Poses (k, 3) that turn evenly on the way, the short way round; a free heading takes the other's."""
+    first = first if np.isfinite(first) else last if np.isfinite(last) else 0.0
+    turn = (last - first + np.pi) % (2 * np.pi) - np.pi if np.isfinite(last) else 0.0
+    travelled = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    return np.column_stack([points, first + turn * travelled / max(travelled[-1], np.finfo(float).tiny)])
