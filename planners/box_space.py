@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from planners.cells import EMPTY, FULL, MIXED, SMALL, SPLIT, Walls
 from planners.channels import EXHAUSTED, FOUND, Front, Query, front_for, refine, search
+from planners.mooring import moored
 from planners.motion import Course, clearance_of, course_of
 from planners.outline import Outline, outline_of
 from planners.path import Answer, Cells, Path
@@ -71,6 +72,35 @@ def prepare_boxes(world: World, robot: Robot, settings: ConfigurationSpaceSettin
 
 def query_boxes(space: BoxSpace, start: Floats, goal: Floats) -> Answer:
     """A path between poses (3,) with headings in [0, 2π) or nan for any; or the proof that there is none."""
+    answer = _searched(space, start, goal)
+    if answer.kind != "undecided":
+        return answer
+    ends = [_moored(space, pose) for pose in (start, goal)]
+    if all(tied is pose for tied, pose in zip(ends, (start, goal), strict=True)):
+        return answer
+    between = _searched(space, *ends)
+    return between if between.path is None else _found(space, _tied(start, between.path.poses, goal))
+
+
+def _moored(space: BoxSpace, pose: Floats) -> Floats:
+    period = 2 * np.pi / space.robot.symmetry
+    return moored(space.tree, space.course, pose, _kept(space), period)
+
+
+def _tied(start: Floats, poses: Floats, goal: Floats) -> Floats:
+    """The motion with its own start and goal before and after; headings stay unwrapped."""
+    first, last = start.copy(), goal.copy()
+    for end, beside in ((first, poses[0]), (last, poses[-1])):
+        end[2] = beside[2] if np.isnan(end[2]) else end[2] + 2 * np.pi * np.round((beside[2] - end[2]) / (2 * np.pi))
+    return np.concatenate([first[None], poses, last[None]])
+
+
+def _kept(space: BoxSpace) -> float:
+    """What straight motions keep from all walls."""
+    return max(space.settings.clearance, space.world.grid)
+
+
+def _searched(space: BoxSpace, start: Floats, goal: Floats) -> Answer:
     asked, settings = _asked(space, start, goal), space.settings
     space.front.seen[:], space.front.closed[:] = 0, 0
     status, last, searches = refine(space.tree, space.outlines, space.walls, asked, space.front, space.queue)
@@ -91,8 +121,8 @@ def _undecided(space: BoxSpace, why: str) -> Answer:
 
 def _found(space: BoxSpace, poses: Floats) -> Answer:
     """The path, shortened by straight motions that are proved to keep the clearance as well."""
-    settings, kept = space.settings, max(space.settings.clearance, space.world.grid)
-    shorter = shortened(space.course, poses, kept, settings.turn_cost, settings.shortcuts)
+    settings = space.settings
+    shorter = shortened(space.course, poses, _kept(space), settings.turn_cost, settings.shortcuts)
     clearance = max(clearance_of(space.course, shorter, 1e-3 * space.robot.reach), settings.clearance)
     certificate = "every piece lies in a box free throughout, or is a straight motion proved by hull and sag"
     reason = f"a path of {len(shorter)} poses, proved free through {space.tree.used[CELLS]} boxes"
@@ -103,7 +133,9 @@ def _asked(space: BoxSpace, start: Floats, goal: Floats) -> Query:
     factors = np.full(5, np.inf)
     factors[EMPTY], factors[MIXED] = 1.0, space.settings.mixed_cost
     sheets, levels, turn_cost = space.robot.symmetry, space.settings.levels, space.settings.turn_cost
-    return Query(start, goal, sheets, 2 * np.pi / sheets, factors, turn_cost, levels)
+    turned = np.array([start, goal])
+    turned[:, 2] %= 2 * np.pi
+    return Query(turned[0], turned[1], sheets, 2 * np.pi / sheets, factors, turn_cost, levels)
 
 
 def _poses(space: BoxSpace, asked: Query, last: int) -> Floats:

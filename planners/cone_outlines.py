@@ -1,51 +1,53 @@
-"""Cones to look at: spines with the free strip on both sides, as the slices left it."""
+"""Cones to look at: spines with the free strip on both sides, slice by slice."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from planners.compiled import compiled
+from planners.orientations import room_before
 from planners.path import Cone
 from planners.slices import Slices
 
 Floats = NDArray[np.float64]
 
 
-@compiled
-def _radii(points: Floats, across: Floats, ends: Floats, most: float) -> Floats:
-    """Distance from each of `points` (n, 2) along a unit vector (2,) to the first wall (m, 4), at most `most`."""
-    radii = np.full(points.shape[0], most)
-    for k in range(points.shape[0]):
-        for wall in range(ends.shape[0]):
-            x, y = ends[wall, 0] - points[k, 0], ends[wall, 1] - points[k, 1]
-            along_x, along_y = ends[wall, 2] - ends[wall, 0], ends[wall, 3] - ends[wall, 1]
-            turn = across[0] * along_y - across[1] * along_x
-            if turn == 0.0:
-                continue
-            distance, share = (x * along_y - y * along_x) / turn, (x * across[1] - y * across[0]) / turn
-            if distance > 0 and -1e-9 <= share <= 1 + 1e-9:
-                radii[k] = min(radii[k], distance)
-    return radii
-
-
 def cone_outlines(slices: Slices, ends: Floats, lines: Floats, pairs: Floats) -> tuple[Cone, ...]:
-    """Every cone with its outline: as far as the walls of its pair (k, 2) reach across the spine, or another obstacle.
+    """Every cone with its outline: as far as the walls of its pair reach across the spine, or another obstacle.
 
-    ends (m, 4) and lines (m, 3), normals and offsets, of the walls.
+    ends (m, 4) and lines (m, 3), normals and offsets, of the walls; pairs (k, 2) of walls.
     """
     cones = []
     for cone, pair in enumerate(pairs.astype(int)):
-        rows = slices.pieces[slices.first[cone] : slices.first[cone + 1]]
-        points = np.vstack([rows[:, :2], rows[-1:, 2:]])
+        pieces = slices.pieces[slices.first[cone] : slices.first[cone + 1]]
         across = lines[pair[0], :2] - lines[pair[1], :2]
         across = across / np.linalg.norm(across)
-        left, right = (_side(points, sign * across, ends, lines[each]) for sign, each in ((-1, pair[0]), (1, pair[1])))
-        outline = np.vstack([points - left[:, None] * across, (points + right[:, None] * across)[::-1]])
-        cones.append(Cone(points[[0, -1]], outline))
+        one, two = _side(pieces, across, ends, lines[pair[0]]), _side(pieces, -across, ends, lines[pair[1]])
+        spine = np.stack([pieces[0, :2], pieces[-1, 2:]])
+        cones.append(Cone(spine, np.concatenate([one, two[::-1]])))
     return tuple(cones)
 
 
-def _side(points: Floats, across: Floats, ends: Floats, line: Floats) -> Floats:
-    """Radii (n,) of one side: to the line of its wall, but not through an obstacle."""
-    distances = (points @ line[:2] - line[2]) / -(across @ line[:2])
-    free = _radii(points, np.ascontiguousarray(across), ends, float(np.ptp(ends)))
-    return np.asarray(np.minimum(free, np.maximum(distances, 0)))
+def _side(pieces: Floats, normal: Floats, ends: Floats, line: Floats) -> Floats:
+    """Corners (2n, 2) of one side over n slices: on the wall's line (3,), or as near as an obstacle comes.
+
+    normal: unit vector (2,) across the spine, away from the side.
+    """
+    points = pieces.reshape(-1, 2)
+    radii = np.maximum((points @ line[:2] - line[2]) / (normal @ line[:2]), 0)
+    rooms = np.repeat(_rooms(pieces, np.ascontiguousarray(normal), ends), 2)
+    narrow = np.repeat(radii.reshape(-1, 2).min(axis=1), 2)
+    # A wall in line with the side is as near as the side's narrow end; only nearer ones cut the cone.
+    radii = np.where(rooms < 0.999 * narrow, rooms, radii)
+    return np.asarray(points - radii[:, None] * normal)
+
+
+@compiled
+def _rooms(pieces: Floats, normal: Floats, ends: Floats) -> Floats:
+    """Distance (n,) against a unit normal from each of `pieces` (n, 4) to the nearest wall beside it."""
+    rooms = np.full(pieces.shape[0], np.inf)
+    for k in range(pieces.shape[0]):
+        for wall in range(ends.shape[0]):
+            room = room_before(pieces[k], ends[wall], normal, 0.0)
+            if room > 0:
+                rooms[k] = min(rooms[k], room)
+    return rooms

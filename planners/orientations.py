@@ -120,7 +120,7 @@ def nearest(piece: Floats, wall: Floats) -> tuple[float, float, float]:
 
 
 @compiled
-def _room_before(piece: Floats, wall: Floats, normal: Floats, reach: float) -> float:
+def room_before(piece: Floats, wall: Floats, normal: Floats, reach: float) -> float:
     """Distance along a unit `normal` (2,) from the part of a wall within reach, measured across it, up to a piece."""
     across_x, across_y = -normal[1], normal[0]
     a = across_x * piece[0] + across_y * piece[1]
@@ -166,7 +166,7 @@ def _missing_wall(polar: Floats, radius: float, piece: Floats, wall: Floats, rea
             continue
         normal[0] /= length
         normal[1] /= length
-        room = distance if k == 0 else _room_before(piece, wall, normal, reach)
+        room = distance if k == 0 else room_before(piece, wall, normal, reach)
         if room <= radius:
             continue
         found = _beside_line(polar, np.arctan2(normal[1], normal[0]), room - radius, legal)
