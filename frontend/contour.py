@@ -38,12 +38,15 @@ class EdgeKind(IntEnum):
     DOOR_ARC = 4
 
 
+MOST_PACES = 2.5  # how many times its own length a pair of readings may be continued to foretell the next
+
+
 @dataclass(frozen=True)
 class ContourSettings:
     """Opinions of the contour."""
 
     filler_spacing: float = 0.1  # metres between filler points; larger is coarser and cheaper
-    least_grazing: float = 0.35  # radians a surface leaves the beam at; larger calls more steep walls occlusions
+    least_grazing: float = 0.5  # radians a surface leaves the beam at; larger calls more steep walls occlusions
     noise_gate: float = 4.0  # standard deviations; larger joins more depth steps into surfaces
     longest_gap: float = 2.0  # metres two readings of one straight wall may lie apart; larger trusts bare grazing walls
     surface_reach: int = 3  # beams to each side of a line fit at least; larger smooths more and rounds corners
@@ -196,7 +199,8 @@ def surface_steps(bearings: Floats, ends: Floats, gates: Floats, grazing: float,
         if angle < 0.5 * np.pi and step <= min(reach, longest) + gates[i]:
             joined[i] = True
         elif step <= longest:
-            joined[i] = _foretold(ends, (i - 1) % n, i, j, gates[i]) or _foretold(ends, (j + 1) % n, j, i, gates[j])
+            before, after = (i - 1) % n, (j + 1) % n
+            joined[i] = _foretold(ends, before, i, j, gates[i]) or _foretold(ends, after, j, i, gates[j])
     return joined
 
 
@@ -212,4 +216,4 @@ def _foretold(ends: Floats, before: int, here: int, there: int, gate: float) -> 
         return False
     foreseen = (dx * ends[here, 1] - dy * ends[here, 0]) / across
     leverage = 1.0 + np.hypot(ends[there, 0] - ends[here, 0], ends[there, 1] - ends[here, 1]) / length
-    return bool(foreseen > 0 and abs(foreseen - reach) <= gate * leverage and leverage < 3.5)
+    return bool(foreseen > 0 and abs(foreseen - reach) <= gate * leverage and leverage < 1.0 + MOST_PACES)

@@ -23,7 +23,7 @@ class LandmarkSettings:
     scales: int = 5  # sigmas, each √2 coarser than the one before; more asks for longer walls
     spacing: float = 0.04  # of the resampled boundary; larger is cheaper and blurs places
     least_turn: float = 0.4  # larger keeps only sharper corners
-    significance: float = 4.0  # sigmas of the noise law; larger keeps only clearer corners
+    significance: float = 3.0  # sigmas of the noise law; larger keeps only clearer corners
     support: float = 1.0  # metres of wall used on each side of a knot; larger is surer on straight walls
     least_support: float = 0.12  # metres of wall a side must have; larger drops knots near chain ends
     least_points: int = 3  # readings a side must have; larger drops far knots
@@ -35,7 +35,7 @@ class LandmarkSettings:
 class ChainKnots:
     """Knots of one chain, in its order.
 
-    kinds (t,) Primitive, positions (t, 2), turns (t,) counter-clockwise, headings (t,) of the bisector to the free space,
+    kinds (t,) Primitive, positions (t, 2), turns (t,) counter-clockwise, headings (t,) of the bisector to free space,
     covariances (t, 2, 2), scales (t, 2) finest and coarsest sigma they live at, places (t,) index of the reading
     in the chain that the knot follows. Smooth joins have a place but no crossing lines: their covariance is that of a
     curve, sigma along it.
@@ -64,7 +64,7 @@ def chain_knots(points: Floats, noise: float, settings: LandmarkSettings) -> Cha
     rows, kept = place_corners(
         points, arc, at, noise,
         np.array([settings.support, settings.least_support, settings.least_points,
-                  settings.roughness, settings.least_turn]),
+                  settings.roughness, settings.least_turn, settings.significance]),
     )  # fmt: skip
     lived = np.column_stack([sigmas[found.first], sigmas[found.last]])[order][kept]
     corners = _from_rows(rows, lived, at[kept], np.searchsorted(arc, at[kept]) - 1, settings)
@@ -84,7 +84,7 @@ def place_corners(points: Floats, arc: Floats, at: Floats, noise: float, limits:
 
     Also the candidates kept (t,). A candidate is dropped when a side is too short, too rough, or hardly turns.
     """
-    support, least_support, least_points, roughness, least_turn = limits
+    support, least_support, least_points, roughness, least_turn, significance = limits
     rows = np.empty((at.size, 8))
     kept = np.empty(at.size, dtype=np.int64)
     found = 0
@@ -100,7 +100,9 @@ def place_corners(points: Floats, arc: Floats, at: Floats, noise: float, limits:
         meet = crossing(first, second)
         gap = np.hypot(meet[0] - points[b, 0], meet[1] - points[b, 1])
         step = np.hypot(points[b, 0] - points[b - 1, 0], points[b, 1] - points[b - 1, 1])
-        if max(first[5], second[5]) > roughness * noise or abs(turn) < least_turn or not gap < 2 * step + 0.1:
+        if max(first[5], second[5]) > roughness * noise or not gap < 2 * step + 0.1:
+            continue
+        if abs(turn) < max(least_turn, significance * np.sqrt(first[4] + second[4])):
             continue
         rows[found, :5] = meet
         rows[found, 5] = turn

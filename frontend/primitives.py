@@ -51,19 +51,20 @@ def smooth_joins(space: ScaleSpace, corners: Floats, noise: float, settings: Pri
     """Places (j,) on the scale space where straight meets curved.
 
     (G∗θ)″ peaks at Δκ / (σ√(2π)) there and, unlike at a corner, without a partner of the opposite sign beside it.
-    Judged at the coarsest scale, away from corners (c,) and from the chain's ends by three sigmas.
+    Judged at the middle scale, away from corners (c,) and from the chain's ends by three sigmas.
     """
-    sigma, spacing = float(space.sigmas[-1]), float(space.arc_length[1])
+    level = space.sigmas.size // 2
+    sigma, spacing = float(space.sigmas[level]), float(space.arc_length[1])
     if space.arc_length[-1] < 6 * sigma:
         return np.empty(0, dtype=np.int64)
     floor = max(settings.least_curvature, settings.significance * _noise_of_steps(sigma, noise, spacing))
-    return lone_steps(space.turns[-1], corners, spacing, sigma, floor)
+    return lone_steps(space.turns[level], corners, spacing, sigma, floor)
 
 
 @compiled
 def lone_steps(turns: Floats, corners: Floats, spacing: float, sigma: float, floor: float) -> Integers:
-    """Places (j,) of the largest steps of curvature over the floor that have no opposite partner within 3 sigmas."""
-    m, reach = turns.size, int(np.ceil(3 * sigma / spacing))
+    """Places (j,) of the largest steps of curvature over the floor that have no opposite partner beside them."""
+    m, reach = turns.size, int(np.ceil(2.5 * sigma / spacing))  # a corner's two flanks lie 2 sigmas apart
     steps = np.zeros(m)  # σ√(2π)·(G∗θ)″
     steps[1:-1] = (turns[2:] - turns[:-2]) / (2 * spacing)
     joins = np.empty(m, dtype=np.int64)

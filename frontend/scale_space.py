@@ -29,7 +29,7 @@ def scale_space(points: Floats, sigmas: Floats, spacing: float) -> ScaleSpace:
     """The scale space of a chain of points (n, 2), n ≥ 2. sigmas: (l,) metres, fine to coarse."""
     steps = np.hypot(*np.diff(points, axis=0).T)
     places = np.concatenate([[0.0], np.cumsum(steps)])
-    count = max(int(np.ceil(places[-1] / spacing)) + 1, 3)
+    count = max(int(np.ceil(places[-1] / spacing - 1e-9)) + 1, 3)
     even = np.linspace(0.0, places[-1], count)
     walked = np.column_stack([np.interp(even, places, points[:, 0]), np.interp(even, places, points[:, 1])])
     return ScaleSpace(even, walked, sigmas, chain_turns(walked, even[1], sigmas))
@@ -39,15 +39,16 @@ def scale_space(points: Floats, sigmas: Floats, spacing: float) -> ScaleSpace:
 def chain_turns(points: Floats, spacing: float, sigmas: Floats) -> Floats:
     """Scale-normalised turns (l, m) of evenly spaced points (m, 2) at each sigma (l,).
 
-    The finest sigma smooths the positions, so that a dense noisy wall has an orientation at all; the others smooth
-    that orientation further. Ends continue by reflection through the end point, which leaves a wall straight.
+    Half the finest sigma smooths the positions, so that a dense noisy wall has an orientation at all; the rest smooths
+    that orientation. Ends continue by reflection through the end point, which leaves a wall straight.
     """
     m = points.shape[0]
-    orientation = _orientation(points, spacing, sigmas[0])
+    first = 0.5 * sigmas[0]
+    orientation = _orientation(points, spacing, first)
     turns = np.empty((sigmas.size, m))
     for level in range(sigmas.size):
         sigma = sigmas[level]
-        extra = np.sqrt(max(sigma**2 - sigmas[0] ** 2, (0.5 * spacing) ** 2))
+        extra = np.sqrt(sigma**2 - first**2)
         reach = int(np.ceil(3.5 * extra / spacing))
         offsets = np.arange(-reach, reach + 1) * spacing
         kernel = np.exp(-0.5 * (offsets / extra) ** 2)
