@@ -16,7 +16,7 @@ SIDE = 100.0
 def _rectangle(middle: Floats, size: Floats, angle: float) -> Floats:
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * size / 2
     cosine, sine = np.cos(angle), np.sin(angle)
-    return np.asarray(corners @ np.array([[cosine, sine], [-sine, cosine]]) + middle
+    return np.asarray(corners @ np.array([[cosine, sine], [-sine, cosine]]) + middle)
 
 
 def chain(rng: np.random.Generator) -> list[Polygon]:
