@@ -40,6 +40,11 @@ class CellLines:
 
 def cell_lines(points: Floats, normals: Floats, weight: Floats, scale: Floats, grid: CellGrid) -> CellLines:
     """Robust lines through samples (n, 2) with unit normals, weights (n,) and expected residuals `scale` (n,)."""
+    if len(points) == 0:
+        nothing = np.empty(0)
+        return CellLines(
+            np.empty(0, np.int64), np.empty((0, 2)), np.empty((0, 2)), np.empty((0, 3), np.int64), nothing, nothing
+        )
     keys, group = _grouped(points, normals, grid)
     count = len(keys)
     facing = _sums(group, normals * weight[:, None], count)

@@ -57,6 +57,8 @@ class Chain:
 def refine(poses: Floats, sheaf: Sheaf, chain: Chain, settings: RefinementSettings) -> Floats:
     """Poses (k, 3) at which all faces agree best; the first one stays."""
     refined = poses.copy()
+    if len(sheaf.points) == 0:
+        return refined
     for step, cell in enumerate(settings.cells):
         # The grid is shifted each time, so that no wall lies on a border of cells in every round.
         shift = np.array([0.5, 0.25]) * step % 1.0

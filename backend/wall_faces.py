@@ -55,6 +55,10 @@ class WallFaces:
 
 def fuse_faces(samples: Samples, settings: FaceSettings) -> WallFaces:
     """The faces of placed samples; those whose direction is not sure take no part and get no face."""
+    everywhere = np.full(len(samples.view), -1, dtype=np.int64)
+    if not samples.sure.any():
+        none, nowhere = np.empty(0, np.int64), np.empty((0, 2))
+        return WallFaces(nowhere, nowhere, nowhere, none, everywhere, none, none, np.zeros(2, np.int64), settings)
     sure = samples.where(samples.sure)
     scale = np.hypot(sure.sigma, settings.flat)
     weight = sure.weight / scale**2
@@ -71,7 +75,6 @@ def fuse_faces(samples: Samples, settings: FaceSettings) -> WallFaces:
     offset = np.sum((sure.points - fitted[candidate, :2]) * fitted[candidate, 2:], axis=1)
     label = np.where(np.abs(offset) < settings.doubt * scale, candidate, -1)
     spans, support = _spans(sure, label, fitted)
-    everywhere = np.full(len(samples.view), -1, dtype=np.int64)
     everywhere[samples.sure] = label
     return WallFaces(fitted[:, :2], fitted[:, 2:], spans, support, everywhere, codes[order], face, origin, settings)
 

@@ -10,9 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frontend.infrared_edges import InfraredEdge, Opening, infrared_edges, pair_edges
-from frontend.opening import undo_beam
+from frontend.opening import smeared, undo_beam
 from frontend.rigid_motion import transform
 from frontend.scan import Booleans, Floats, Integers, Scan
+
+BRIGHT_SHARE = (
+    2.0  # of the stated half-beam: the beam of a surface 12 dB brighter than the faintest that is reckoned with
+)
 
 
 class ReadingKind(IntEnum):
@@ -73,10 +77,13 @@ def fuse(scan: Scan, settings: FusionSettings) -> FusedScan:
     opened = undo_beam(
         scan.bearings,
         np.where(measured, scan.ranges, np.nan),
-        scan.sensor.half_beam * settings.beam_share,
+        scan.sensor.beam * np.array([1.0, settings.beam_share]),
         scan.full_turn,
     )
     ranges = _filled(opened, kinds, scan, settings)
+    bounds = _smeared(ranges, kinds, scan)
+    kinds[bounds] = ReadingKind.NO_RETURN
+    reasons |= {int(i): f"the beam is too wide for this corner: it is at least {ranges[i]:.2f} m deep" for i in bounds}
     edges = infrared_edges(scan)
     pairs, lone = pair_edges(edges, scan)
     reasons |= {edge.jamb: f"a lone infrared edge at {np.degrees(edge.bearing):.1f}° opens nothing" for edge in lone}
@@ -131,6 +138,16 @@ def _spikes(scan: Scan, measured: Booleans, settings: FusionSettings) -> Boolean
     return np.asarray(ranges > np.maximum(nearest_before, nearest_after) + settings.spike_height)
 
 
+def _smeared(ranges: Floats, kinds: NDArray[np.uint8], scan: Scan) -> Integers:
+    """Measured readings (s,) that only bound a corner or gap from below (rule 2: never a surface)."""
+    if scan.sensor.half_beam <= 0 or scan.bearings.size < 3:
+        return np.empty(0, np.int64)
+    tolerance = 2 * float(np.hypot(scan.sensor.range_noise, scan.sensor.quantum))
+    widest = int(np.ceil(scan.sensor.half_beam / np.median(np.diff(scan.bearings))))
+    bounds = smeared(ranges, tolerance, max(widest, 2), scan.full_turn)
+    return np.asarray(bounds[kinds[bounds] == ReadingKind.MEASURED])
+
+
 def _filled(opened: Floats, kinds: NDArray[np.uint8], scan: Scan, settings: FusionSettings) -> Floats:
     """Ranges (n,) with a cautious one wherever nothing was measured: no farther than the nearer neighbour says."""
     measured = kinds == ReadingKind.MEASURED
@@ -179,22 +196,30 @@ def _gap(opening: Opening) -> float:
 
 
 def _core(opening: Opening, scan: Scan) -> Booleans:
-    """Which readings (w,) of the opening have their whole beam inside it."""
+    """Which readings (w,) of the opening have their whole beam inside it.
+
+    The stated half-beam is what surely is heard; a bright jamb is heard from about twice as far off the axis.
+    """
     from_right = np.mod(scan.bearings[opening.readings] - opening.right.bearing, 2 * np.pi)
-    return np.asarray((from_right > scan.sensor.half_beam) & (from_right < _gap(opening) - scan.sensor.half_beam))
+    right, left = (
+        BRIGHT_SHARE * scan.sensor.half_beam_at(float(scan.ranges[edge.jamb])) for edge in (opening.right, opening.left)
+    )
+    return np.asarray((from_right > right) & (from_right < _gap(opening) - left))
 
 
 def _arc(opening: Opening, ranges: Floats, scan: Scan) -> Floats:
     """Ranges (w,) of the arc: the infrared's horizon or the farthest echo, whichever is farther.
 
-    A gap wider than the beam lets the sonar look through, so there each bearing keeps its own opened range:
-    one far echo in the middle says nothing of the sides.
+    A gap wider than the beam lets the sonar look through, so there each bearing keeps its own opened range, and only
+    where the whole beam lies inside is the infrared's silence believed beyond it: at the flanks a wall that merely
+    fades out of the infrared's sight reads like a smeared jamb.
     """
     horizon = scan.sensor.infrared_range
     assert horizon is not None
     own = ranges[opening.readings]
-    if np.any(_core(opening, scan)):
-        return np.maximum(own, horizon)
+    core = _core(opening, scan)
+    if np.any(core):
+        return np.where(core, np.maximum(own, horizon), own)
     return np.full(own.size, max(horizon, float(np.max(own))))
 
 

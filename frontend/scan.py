@@ -19,6 +19,8 @@ class Sensor:
     """Facts of one sensor, from `recording.toml`; opinions live in settings.
 
     kind: "sonar_infrared", "lidar" or "time_of_flight". Metres and radians throughout.
+    half_beam: how far off its axis the sensor surely hears a surface at any range. half_beams: the same range by range,
+    pairs of metres and radians from near to far, where it is known: a near surface is heard much farther off the axis.
     mount: pose (3,) of the sensor in the robot's frame. infrared_range: how far the infrared
     detects at most (10 ft with three LEDs); None without an infrared detector.
     """
@@ -31,6 +33,16 @@ class Sensor:
     quantum: float = 0.0
     infrared_range: float | None = None
     mount: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    half_beams: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def beam(self) -> Floats:
+        """(k, 2) rows of metres and radians, the half-beam narrowing from row to row; one row where it is constant."""
+        return np.array(self.half_beams) if self.half_beams else np.array([[np.inf, self.half_beam]])
+
+    def half_beam_at(self, metres: float) -> float:
+        """The half-beam in radians at a range."""
+        return float(np.interp(metres, *self.beam.T)) if self.half_beams else self.half_beam
 
 
 @dataclass(frozen=True, eq=False)

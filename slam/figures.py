@@ -182,8 +182,9 @@ def _sheet(title: str) -> tuple[Figure, Axes]:
 
 
 def _framed(figure: Figure, axes: Axes, corners: Floats) -> Figure:
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    axes.set(xlim=(low[0] - 0.3, high[0] + 0.3), ylim=(low[1] - 0.3, high[1] + 0.3))
+    if len(corners):
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        axes.set(xlim=(low[0] - 0.3, high[0] + 0.3), ylim=(low[1] - 0.3, high[1] + 0.3))
     _legend([axes])
     return figure
 

@@ -12,8 +12,23 @@ from frontend.sensors.transducer import FOOT, INCH, Transducer, pattern_tables
 
 STEP = 0.001  # metres of range per step of the energy detector: a third of the quantum
 
-# Blanking, reach and resolution are the paper's. The half-beam is a cautious one: what is left of it 3.5 m away (see
-# half_beam_at, which knows the range).
+
+def half_beam_at(ranges: Floats, transducer: Transducer, albedo: float = MATERIALS["rough"].albedo) -> Floats:
+    """How far off the axis (n,) a rough surface at ranges (n,) is still heard, radians: the effective half-beam.
+
+    The surface fills the beam from that angle outwards. Spreading and absorption narrow the beam with the range.
+    """
+    azimuths, _, of_wall = pattern_tables(transducer)
+    beyond = np.cumsum((of_wall * np.diff(azimuths, append=azimuths[-1]))[::-1])[::-1]
+    needed = transducer.threshold * np.pi / albedo * ranges**2 * np.exp(2 * transducer.decay * ranges)
+    return np.asarray(np.interp(-needed, -beyond, azimuths, left=0.0))
+
+
+# Blanking, reach and resolution are the paper's. The constant half-beam is what is left of it 3.5 m away.
+BEAM_RANGES = (0.3, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0)
+# Range by range it holds for surfaces 6 dB fainter than a rough wall: speckle fades echoes, and materials differ.
+FAINTER = MATERIALS["rough"].albedo / 4
+BEAMS = tuple(zip(BEAM_RANGES, half_beam_at(np.array(BEAM_RANGES), Transducer(), FAINTER).tolist(), strict=True))
 SONAR = Sensor(
     kind="sonar_infrared",
     min_range=0.9 * FOOT,
@@ -22,6 +37,7 @@ SONAR = Sensor(
     range_noise=0.01,
     quantum=0.12 * INCH,
     infrared_range=10 * FOOT,
+    half_beams=BEAMS,
 )
 
 
@@ -57,17 +73,6 @@ def first_echoes(echoes: Echoes, headings: Floats, transducer: Transducer) -> Fl
     columns = np.stack([echoes.directions, echoes.lengths, echoes.energies, echoes.tall], axis=1)[audible]
     gate = Gate(SONAR.min_range, SONAR.max_range, transducer.chirp_length, transducer.threshold)
     return np.asarray(_crossings(headings, columns, np.stack([of_point, of_wall]), gate))
-
-
-def half_beam_at(ranges: Floats, transducer: Transducer, albedo: float = MATERIALS["rough"].albedo) -> Floats:
-    """How far off the axis (n,) a rough surface at ranges (n,) is still heard, radians: the effective half-beam.
-
-    The surface fills the beam from that angle outwards. Spreading and absorption narrow the beam with the range.
-    """
-    azimuths, _, of_wall = pattern_tables(transducer)
-    beyond = np.cumsum((of_wall * np.diff(azimuths, append=azimuths[-1]))[::-1])[::-1]
-    needed = transducer.threshold * np.pi / albedo * ranges**2 * np.exp(2 * transducer.decay * ranges)
-    return np.asarray(np.interp(-needed, -beyond, azimuths, left=0.0))
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]

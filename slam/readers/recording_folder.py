@@ -14,7 +14,10 @@ from slam.readers.sieve import LineError, Sieve, in_time
 
 @dataclass(frozen=True)
 class SensorTable:
-    """[sensor] of recording.toml, as `frontend.scan.Sensor` but in degrees. mount: x, y in metres, heading."""
+    """[sensor] of recording.toml, as `frontend.scan.Sensor` but in degrees. mount: x, y in metres, heading.
+
+    half_beams: pairs of metres and degrees from near to far.
+    """
 
     kind: str
     max_range: float
@@ -24,6 +27,7 @@ class SensorTable:
     quantum: float = 0.0
     infrared_range: float | None = None
     mount: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    half_beams: tuple[tuple[float, float], ...] = ()
 
     @property
     def sensor(self) -> Sensor:
@@ -31,7 +35,8 @@ class SensorTable:
         x, y, heading = self.mount
         half_beam, mount = math.radians(self.half_beam_degrees), (x, y, math.radians(heading))
         facts = (self.kind, self.max_range, self.min_range, half_beam, self.range_noise, self.quantum)
-        return Sensor(*facts, self.infrared_range, mount)
+        half_beams = tuple((metres, math.radians(degrees)) for metres, degrees in self.half_beams)
+        return Sensor(*facts, self.infrared_range, mount, half_beams)
 
 
 @dataclass(frozen=True)

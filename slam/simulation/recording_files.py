@@ -75,6 +75,8 @@ def recording_toml(world: World, command: str, wheels: WheelNoise, scans: list[S
     sensor = scans[0].sensor
     mount = [sensor.mount[0], sensor.mount[1], float(np.degrees(sensor.mount[2]))]
     infrared = [] if sensor.infrared_range is None else [f"infrared_range = {sensor.infrared_range:.4f}"]
+    rows = ", ".join(f"[{metres:g}, {np.degrees(angle):.2f}]" for metres, angle in sensor.half_beams)
+    beams = [f"half_beams = [{rows}]  # metres, degrees"] if rows else []
     lines = [
         f"name = {json.dumps(world.name)}",
         f"description = {json.dumps(world.description)}",
@@ -86,6 +88,7 @@ def recording_toml(world: World, command: str, wheels: WheelNoise, scans: list[S
         f"min_range = {sensor.min_range:.4f}",
         f"max_range = {sensor.max_range:.4f}",
         f"half_beam_degrees = {np.degrees(sensor.half_beam):.2f}",
+        *beams,
         f"range_noise = {sensor.range_noise:.4f}",
         f"quantum = {sensor.quantum:.6f}",
         *infrared,

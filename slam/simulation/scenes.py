@@ -24,7 +24,7 @@ def basement() -> Plan:
         "flynn_basement",
         "Three views of a basement room of 19 x 13 ft with rough walls; each pose is 2 ft from the one before",
         [
-            *_basement_walls(THREE_DOORS, (-8, -0.5, 27, 21)),
+            *_basement_walls(THREE_DOORS, (-5, -0.5, 24, 18)),
             _closet_door((1.2, 9.8), -90, "rough"),
             _closet_door((16.0, 2.0), 90, "rough"),
             pillar((9.0 * FOOT, 9.0 * FOOT), 0.65 * FOOT),

@@ -41,7 +41,9 @@ def test_the_facts_of_the_folder_reach_every_scan(tmp_path: Path) -> None:
 
 
 def test_an_unknown_fact_is_refused_with_the_known_ones(tmp_path: Path) -> None:
-    with pytest.raises(TomlFileError, match=r"unknown key sensor\.beam; known are half_beam_degrees, infrared_range"):
+    with pytest.raises(
+        TomlFileError, match=r"unknown key sensor\.beam; known are half_beam_degrees, half_beams, infrared_range"
+    ):
         read_recording_folder(written(tmp_path, FACTS.replace("half_beam_degrees", "beam"), TABLE), False)
 
 
