@@ -18,6 +18,8 @@ from planners.slices import Slices
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
+SINE = 1e-5  # of the least angle at which spines cross: far above rounding
+
 
 class SpineGraph(NamedTuple):
     """Stops and nodes.
@@ -48,7 +50,8 @@ def crossings(spines: Floats) -> Floats:
         for j in range(i + 1, spines.shape[0]):
             u, v = spines[j, 2] - spines[j, 0], spines[j, 3] - spines[j, 1]
             turn = x * v - y * u
-            if turn == 0.0:
+            # Spines on one line cross nowhere, though rounding may say anything.
+            if turn * turn <= SINE**2 * (x * x + y * y) * (u * u + v * v):
                 continue
             to_x, to_y = spines[j, 0] - spines[i, 0], spines[j, 1] - spines[i, 1]
             here, there = (to_x * v - to_y * u) / turn, (to_x * y - to_y * x) / turn
