@@ -36,10 +36,13 @@ class FusionSettings:
     """
 
     beam_share: float = 1.0  # larger reaches deeper into corners and gaps, and past the truth where it exceeds 1
+    beam_doubt: float = (
+        1.0  # of what undoing the beam moved: bright walls are heard twice as far off; larger trusts less
+    )
     no_return_clears: float = 2.0  # metres a reading without echo counts as free; larger opens rooms behind glass
     spike_height: float = 0.5  # metres; larger lets more lone readings (specular, crosstalk) pass as surface
     spike_readings: int = 2  # readings a lone run may have and still be rejected; larger rejects narrow true gaps
-    door_depth: float = 0.3  # metres an opening lies behind its jambs at least; larger misses shallow niches
+    door_depth: float = 0.15  # metres a jamb is nearer than the infrared's range; larger misses far doors
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +50,8 @@ class FusedScan:
     """A scan after the rules.
 
     ranges: (n,) metres along each bearing (n,), always finite; raw_ranges: (n,) as the sensor gave them.
-    kinds: (n,) ReadingKind. spread: (n,) standard deviation along the beam, metres.
+    kinds: (n,) ReadingKind. spread: (n,) standard deviation along the beam, metres, and doubt: (n,) what undoing the
+    beam adds to it.
     edges: valid infrared edges; openings: the pairs among them that were redrawn as arcs.
     jambs: (d, 2, 2) the right and left jamb of each opening in the robot's frame.
     reasons: why a reading was rejected or an edge opened nothing, by reading.
@@ -59,6 +63,7 @@ class FusedScan:
     raw_ranges: Floats
     kinds: NDArray[np.uint8]
     spread: Floats
+    doubt: Floats
     edges: tuple[InfraredEdge, ...]
     openings: tuple[Opening, ...]
     jambs: Floats
@@ -97,8 +102,9 @@ def fuse(scan: Scan, settings: FusionSettings) -> FusedScan:
         else:
             reasons[opening.right.jamb] = reason
     spread = np.full(ranges.size, np.hypot(scan.sensor.range_noise, scan.sensor.quantum / np.sqrt(12)))
+    moved = np.where(kinds == ReadingKind.MEASURED, ranges - scan.ranges, 0.0)
     return FusedScan(
-        scan, scan.bearings, ranges, scan.ranges, kinds, spread,
+        scan, scan.bearings, ranges, scan.ranges, kinds, spread, settings.beam_doubt * np.nan_to_num(moved),
         tuple(edges), tuple(openings), _jambs(openings, ranges, scan), reasons,
     )  # fmt: skip
 
@@ -177,7 +183,6 @@ def _why_closed(opening: Opening, ranges: Floats, scan: Scan, settings: FusionSe
     """Why the infrared's silence between two edges is no opening, or None when it is one."""
     horizon = scan.sensor.infrared_range
     assert horizon is not None
-    jamb = max(ranges[opening.right.jamb], ranges[opening.left.jamb])
     width = _gap(opening)
     core = opening.readings[_core(opening, scan)]
     looked = core[np.isfinite(scan.ranges[core])]
@@ -185,10 +190,35 @@ def _why_closed(opening: Opening, ranges: Floats, scan: Scan, settings: FusionSe
         return (
             f"the sonar sees a surface {np.min(scan.ranges[looked]):.2f} m away inside the {np.degrees(width):.0f}° gap"
         )
-    beyond = np.max(ranges[opening.readings])
-    if max(horizon, beyond) - jamb < settings.door_depth:
-        return f"no depth behind the jamb at {jamb:.2f} m: the infrared fades out at {horizon:.2f} m"
+    for edge in (opening.right, opening.left):
+        wall = max(float(ranges[edge.jamb]), _wall_range(edge, ranges, scan))
+        # A wall that would lie well beyond the horizon is not the one the infrared felt at the edge.
+        if abs(horizon - wall) < settings.door_depth:
+            return f"the wall is {wall:.2f} m away at the edge, where the infrared fades out by itself"
     return None
+
+
+def _wall_range(edge: InfraredEdge, ranges: Floats, scan: Scan) -> float:
+    """How far the wall beside an edge would be at the edge, 0 where no straight wall leads there.
+
+    In a corner the beam reads short, so where the infrared fades out there it seems to do so before its range: the
+    wall is taken from one to two half-beams aside, where it is read as it is.
+    """
+    half_beam = scan.sensor.half_beam_at(float(ranges[edge.jamb]))
+    step = float(np.median(np.diff(scan.bearings)))
+    aside = np.arange(int(np.ceil(2 * half_beam / step)) + 1)
+    places = edge.jamb + (-aside if edge.opens else aside)
+    if not scan.full_turn and not (places.min() >= 0 and places.max() < ranges.size):
+        return 0.0
+    reach = ranges[places % ranges.size]
+    bearings = scan.bearings[places % ranges.size] - edge.bearing
+    straight = slice(int(np.ceil(half_beam / step)), None)
+    # A line's inverse range is linear in the cosine and sine of the bearing.
+    rays = np.column_stack([np.cos(bearings), np.sin(bearings)])[straight]
+    line, *_ = np.linalg.lstsq(rays, 1 / reach[straight], rcond=None)
+    misses = np.abs(reach[straight] - 1 / np.maximum(rays @ line, 1e-6))
+    is_wall = np.max(misses, initial=0.0) < 4 * scan.sensor.range_noise + scan.sensor.quantum
+    return float(1 / line[0]) if is_wall and line[0] > 0 else 0.0
 
 
 def _gap(opening: Opening) -> float:
@@ -210,16 +240,14 @@ def _core(opening: Opening, scan: Scan) -> Booleans:
 def _arc(opening: Opening, ranges: Floats, scan: Scan) -> Floats:
     """Ranges (w,) of the arc: the infrared's horizon or the farthest echo, whichever is farther.
 
-    A gap wider than the beam lets the sonar look through, so there each bearing keeps its own opened range, and only
-    where the whole beam lies inside is the infrared's silence believed beyond it: at the flanks a wall that merely
-    fades out of the infrared's sight reads like a smeared jamb.
+    A gap wider than the beam lets the sonar look through, so there each bearing keeps its own opened range where that
+    is farther: one far echo in the middle says nothing of the sides.
     """
     horizon = scan.sensor.infrared_range
     assert horizon is not None
     own = ranges[opening.readings]
-    core = _core(opening, scan)
-    if np.any(core):
-        return np.where(core, np.maximum(own, horizon), own)
+    if np.any(_core(opening, scan)):
+        return np.maximum(own, horizon)
     return np.full(own.size, max(horizon, float(np.max(own))))
 
 

@@ -7,7 +7,9 @@ returns the polyline (v, 2). They are the peers of the front end's benchmark and
 import heapq
 
 import numpy as np
+from scipy.optimize import least_squares
 
+from frontend.compiled import compiled
 from frontend.scan import Floats, Integers
 
 
@@ -89,3 +91,65 @@ def radial_errors(rays: Floats, polyline: Floats) -> Floats:
 
 def _bearings(points: Floats) -> Floats:
     return np.unwrap(np.arctan2(points[:, 1], points[:, 0]))
+
+
+def split_and_merge(rays: Floats, count: int) -> Floats:
+    """Split to twice as many vertices, then merge the neighbours that one line fits best, until so many are left."""
+    kept = list(_split_farthest(rays, min(2 * count, rays.shape[0])))
+    while len(kept) > count:
+        worst = [float(np.max(_off_chord(rays, kept[k - 1], kept[k + 1]))) for k in range(1, len(kept) - 1)]
+        del kept[1 + int(np.argmin(worst))]
+    return np.asarray(rays[kept])
+
+
+def maximum_likelihood(rays: Floats, count: int) -> Floats:
+    """Drop the reading that costs the least radial likelihood until so many are left, then move all vertices freely to
+    the best likelihood (after Schaefer, Büscher, Luft & Burgard 2018, Gaussian along the ray)."""
+    start = rays[_drop_least_likely(rays, count)]
+
+    def errors(flat: Floats) -> Floats:
+        moved = flat.reshape(-1, 2)
+        bearings = _bearings(moved)
+        ordered = bool(np.all(np.diff(bearings) > 0)) and bearings[-1] - bearings[0] < 2 * np.pi
+        return radial_errors(rays, moved) if ordered else np.full(rays.shape[0], 1e3)
+
+    moved = least_squares(errors, start.ravel(), max_nfev=8, x_scale=0.1)
+    return np.asarray(moved.x.reshape(-1, 2) if moved.cost < 0.5 * np.sum(errors(start.ravel()) ** 2) else start)
+
+
+def _drop_least_likely(rays: Floats, count: int) -> Integers:
+    n = rays.shape[0]
+    before, after = np.arange(n) - 1, np.arange(n) + 1
+    loss = np.full(n, np.inf)
+    heap = []
+    for k in range(1, n - 1):
+        loss[k] = chord_error(rays, k - 1, k + 1)
+        heap.append((float(loss[k]), k))
+    heapq.heapify(heap)
+    left = n
+    while left > count:
+        cost, k = heapq.heappop(heap)
+        if cost != loss[k]:
+            continue
+        loss[k] = np.nan
+        i, j = int(before[k]), int(after[k])
+        after[i], before[j] = j, i
+        left -= 1
+        for m in (i, j):
+            if 0 < m < n - 1:
+                a, b = int(before[m]), int(after[m])
+                loss[m] = chord_error(rays, a, b) - chord_error(rays, a, m) - chord_error(rays, m, b)
+                heapq.heappush(heap, (float(loss[m]), m))
+    return np.flatnonzero(~np.isnan(loss))
+
+
+@compiled
+def chord_error(rays: Floats, i: int, j: int) -> float:
+    """Squared radial error of the chord from ray i to ray j over the rays between."""
+    dx, dy = rays[j, 0] - rays[i, 0], rays[j, 1] - rays[i, 1]
+    total = 0.0
+    for k in range(i + 1, j):
+        length = np.hypot(rays[k, 0], rays[k, 1])
+        miss = length * ((rays[i, 0] * dy - rays[i, 1] * dx) / (rays[k, 0] * dy - rays[k, 1] * dx) - 1.0)
+        total += miss * miss
+    return total
