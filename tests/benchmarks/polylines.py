@@ -105,7 +105,7 @@ def split_and_merge(rays: Floats, count: int) -> Floats:
 def maximum_likelihood(rays: Floats, count: int) -> Floats:
     """Drop the reading that costs the least radial likelihood until so many are left, then move all vertices freely to
     the best likelihood (after Schaefer, Büscher, Luft & Burgard 2018, Gaussian along the ray)."""
-    start = rays[_drop_least_likely(rays, count)]
+    start = most_likely_readings(rays, count)
 
     def errors(flat: Floats) -> Floats:
         moved = flat.reshape(-1, 2)
@@ -117,7 +117,8 @@ def maximum_likelihood(rays: Floats, count: int) -> Floats:
     return np.asarray(moved.x.reshape(-1, 2) if moved.cost < 0.5 * np.sum(errors(start.ravel()) ** 2) else start)
 
 
-def _drop_least_likely(rays: Floats, count: int) -> Integers:
+def most_likely_readings(rays: Floats, count: int) -> Floats:
+    """The readings that the greedy step of the maximum likelihood leaves, before they are moved."""
     n = rays.shape[0]
     before, after = np.arange(n) - 1, np.arange(n) + 1
     loss = np.full(n, np.inf)
@@ -140,7 +141,7 @@ def _drop_least_likely(rays: Floats, count: int) -> Integers:
                 a, b = int(before[m]), int(after[m])
                 loss[m] = chord_error(rays, a, b) - chord_error(rays, a, m) - chord_error(rays, m, b)
                 heapq.heappush(heap, (float(loss[m]), m))
-    return np.flatnonzero(~np.isnan(loss))
+    return np.asarray(rays[~np.isnan(loss)])
 
 
 @compiled
