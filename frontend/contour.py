@@ -114,7 +114,7 @@ def trace(fused: FusedScan, settings: ContourSettings) -> Contour:
     )  # fmt: skip
     normals, thickness = line_fits(ends, joints == EdgeKind.REAL, reaches, np.zeros(2))
     corners, kinds, edges, readings = ends, _point_kinds(fused.kinds), joints, np.arange(ends.shape[0])
-    spread = fused.spread
+    spread = np.hypot(fused.spread, fused.doubt)
     if not fused.scan.full_turn:  # the view ends at the sensor, on both sides
         corners, kinds = np.vstack([ends, np.zeros(2)]), np.append(kinds, np.uint8(ContourKind.SIDE))
         edges, readings = np.append(joints, np.uint8(EdgeKind.SIDE)), np.append(readings, readings[-1])

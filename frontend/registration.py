@@ -82,7 +82,7 @@ def register(
         local_map.first, local_map.corner, local_map.columns, local_map.rows,
         guess.pose if start is None else start, guess.pose, guess.information, passes,
     )  # fmt: skip
-    believed = information / (max(square, settings.finest**2) * settings.shared_beams)
+    believed = information / (max(square, spread**2, settings.finest**2) * settings.shared_beams)
     firm = np.linalg.eigvalsh(information[:2, :2])
     matched = np.flatnonzero(partners >= 0)
     return Alignment(
