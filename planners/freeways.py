@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from planners.cells import inside
 from planners.compiled import compiled
+from planners.insertion import order_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -88,7 +89,8 @@ def _cuts(spine: Floats, ends: Floats) -> Floats:
             y = ends[k, 1] + share * (ends[k, 3] - ends[k, 1])
             found[count] = spine[2] * (x - spine[0]) + spine[3] * (y - spine[1])
             count += 1
-    return np.sort(found[:count])
+    cuts = found[:count].copy()
+    return np.asarray(cuts[order_of(cuts)])
 
 
 @compiled

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planners.compiled import compiled
+from planners.insertion import order_of
 from planners.orientations import nearest
 from planners.outline import Outline, outline_of
 from planners.robot import Robot
@@ -40,7 +41,8 @@ def course_of(world: World, robot: Robot) -> Course:
 @compiled
 def _hull(points: Floats) -> Floats:
     """Corners (k, 2) of the hull of a few points, counter-clockwise: the chain from below and the one from above."""
-    order = np.argsort(points[:, 0] + 1e-9 * points[:, 1])
+    # Ties in x go by y; points nearer than 1e-9 in x may swap, which moves the hull by less than a grid step.
+    order = order_of(points[:, 0] + 1e-9 * points[:, 1])
     hull, count = np.empty((2 * points.shape[0], 2)), 0
     for sweep in range(2):
         base = count

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planners.compiled import compiled
+from planners.insertion import order_of
 
 Floats = NDArray[np.float64]
 
@@ -79,7 +80,7 @@ def intersected(first: Floats, second: Floats) -> Floats:
 @compiled
 def _united(pieces: Floats, count: int) -> Floats:
     """The set that `count` intervals in any order make up."""
-    order = np.argsort(pieces[:count, 0])
+    order = order_of(pieces[:count, 0].copy())
     union = np.empty((count, 2))
     kept = 0
     for k in range(count):

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planners.compiled import compiled
+from planners.insertion import order_of
 from planners.orientations import legal_along, nearest
 
 Floats = NDArray[np.float64]
@@ -119,7 +120,7 @@ def _grown(spine: Floats, near: Floats, body: Body) -> tuple[Floats, Floats]:
             for k in range(min(found.shape[0], INTERVALS)):
                 legal[count, k, 0], legal[count, k, 1] = found[k, 0], found[k, 1]
             front, width, count = end if side == 0 else begin, min(2 * width, whole), count + 1
-    order = np.argsort(places[:count, 0])
+    order = order_of(places[:count, 0].copy())
     return places[order], legal[order]
 
 

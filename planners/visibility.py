@@ -114,47 +114,56 @@ def _tangents(corners: Floats, raster: Raster, radius: float) -> Ints:
 
 
 @compiled
-def _shortest(roadmap: Roadmap, start: Floats, goal: Floats, queue: Queue) -> tuple[Ints, int]:
-    """Parents of all corners, and the corner from which the goal is reached (−2: straight, −1: not at all).
-
-    Ways from the start and to the goal are only looked at when their turn comes.
-    """
+def _depart(roadmap: Roadmap, start: Floats, goal: Floats, queue: Queue, cost: Floats) -> None:
+    """Queue every corner that the start may see, as state n + i: it is looked at when its turn comes."""
     total = roadmap.corners.shape[0]
-    # State i: corner i reached; n + i: straight from the start to i, not yet looked at; 2n + i: from i to the goal.
-    cost, parent, piece = np.full(3 * total, np.inf), np.full(3 * total, -1, np.int32), np.empty(4)
-    for axis in range(2):
-        piece[axis], piece[2 + axis] = start[axis], goal[axis]
-    if sees(roadmap.raster, roadmap.radius, piece):
-        return parent, -2
     for i in range(total):
         x, y = roadmap.corners[i, 0], roadmap.corners[i, 1]
         if _touches(roadmap.corners[i], start[0], start[1]):
             cost[total + i] = np.hypot(x - start[0], y - start[1])
             push(queue, total + i, cost[total + i] + np.hypot(x - goal[0], y - goal[1]))
+
+
+@compiled
+def _spread(roadmap: Roadmap, i: int, goal: Floats, queue: Queue, cost: Floats, parent: Ints) -> None:
+    """Queue the corners joined to corner i, and the way from it to the goal as state 2n + i."""
+    x, y = roadmap.corners[i, 0], roadmap.corners[i, 1]
+    if _touches(roadmap.corners[i], goal[0], goal[1]):
+        push(queue, 2 * roadmap.corners.shape[0] + i, cost[i] + np.hypot(x - goal[0], y - goal[1]))
+    for k in range(roadmap.first[i], roadmap.first[i + 1]):
+        j = roadmap.targets[k]
+        u, v = roadmap.corners[j, 0], roadmap.corners[j, 1]
+        reached = cost[i] + np.hypot(u - x, v - y)
+        if reached < cost[j]:
+            cost[j], parent[j] = reached, i
+            push(queue, j, reached + np.hypot(u - goal[0], v - goal[1]))
+
+
+@compiled
+def _shortest(roadmap: Roadmap, start: Floats, goal: Floats, queue: Queue) -> tuple[Ints, int]:
+    """Parents of all corners, and the corner from which the goal is reached (−2: straight, −1: not at all)."""
+    total = roadmap.corners.shape[0]
+    cost, parent, piece = np.full(2 * total, np.inf), np.full(total, -1, np.int32), np.empty(4)
+    for axis in range(2):
+        piece[axis], piece[2 + axis] = start[axis], goal[axis]
+    if sees(roadmap.raster, roadmap.radius, piece):
+        return parent, -2
+    _depart(roadmap, start, goal, queue, cost)
     while queue.size[0] > 0:
         state = pop(queue)
         i = state % total
         x, y = roadmap.corners[i, 0], roadmap.corners[i, 1]
-        if state >= total:
-            end = start if state < 2 * total else goal
-            piece[0], piece[1], piece[2], piece[3] = x, y, end[0], end[1]
-            if not sees(roadmap.raster, roadmap.radius, piece):
-                continue
+        if state < total:
+            _spread(roadmap, i, goal, queue, cost, parent)
+            continue
+        end = start if state < 2 * total else goal
+        piece[0], piece[1], piece[2], piece[3] = x, y, end[0], end[1]
+        if sees(roadmap.raster, roadmap.radius, piece):
             if state >= 2 * total:
                 return parent, i
             if cost[state] < cost[i]:
                 cost[i], parent[i] = cost[state], -1
                 push(queue, i, cost[i] + np.hypot(x - goal[0], y - goal[1]))
-            continue
-        if _touches(roadmap.corners[i], goal[0], goal[1]):
-            push(queue, 2 * total + i, cost[i] + np.hypot(x - goal[0], y - goal[1]))
-        for k in range(roadmap.first[i], roadmap.first[i + 1]):
-            j = roadmap.targets[k]
-            u, v = roadmap.corners[j, 0], roadmap.corners[j, 1]
-            reached = cost[i] + np.hypot(u - x, v - y)
-            if reached < cost[j]:
-                cost[j], parent[j] = reached, i
-                push(queue, j, reached + np.hypot(u - goal[0], v - goal[1]))
     return parent, -1
 
 
