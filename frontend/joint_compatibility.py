@@ -41,17 +41,19 @@ def most_joint_pairs(knots: JointPairs, guess: Floats, guess_covariance: Floats,
     information = np.einsum("abil,blj->abij", weighted, slopes).reshape(*costs.shape[:2], 9)
     prior = np.concatenate([np.zeros(4), np.linalg.inv(guess_covariance).ravel()])
     gates = np.asarray(chi2.ppf(confidence, 2.0 * np.arange(1, knots.fixed.shape[0] + 1)))
-    return branch_and_bound(knots.alike, np.concatenate([costs, pulls, information], axis=2), prior, gates)
+    partners = branch_and_bound(knots.alike, np.concatenate([costs, pulls, information], axis=2), prior, gates)
+    paired = np.flatnonzero(partners >= 0)
+    return np.column_stack([partners[paired], paired])
 
 
 @compiled
 def branch_and_bound(alike: Booleans, terms: Floats, prior: Floats, gates: Floats) -> Integers:
-    """The largest jointly compatible set of pairs (p, 2); ties go to the smallest joint distance.
+    """The fixed knot of each moving one (b,), −1 for none: the largest jointly compatible set, of those the closest.
 
     terms: (a, b, 13) what a pair adds: cost νᵀR⁻¹ν, pull HᵀR⁻¹ν (3), information HᵀR⁻¹H (9). prior: (13,) the same
     of the guess. gates: χ² gate by number of pairs, less one.
     """
-    fixed, moving = alike.shape
+    moving = alike.shape[1]
     sums = np.zeros((moving + 1, 13))
     sums[0] = prior
     taken = np.full(moving, -2, dtype=np.int64)  # −2: not tried, −1: left out
@@ -66,33 +68,28 @@ def branch_and_bound(alike: Booleans, terms: Floats, prior: Floats, gates: Float
                 most, least = count[depth], distance
                 best[:] = taken
             depth -= 1
-            continue
-        if count[depth] + moving - depth < most or taken[depth] == -1:
+        elif count[depth] + moving - depth < most or taken[depth] == -1:
             taken[depth] = -2
             depth -= 1
-            continue
-        candidate = 0 if taken[depth] == -2 else taken[depth] + 1
-        while candidate < fixed:
-            if alike[candidate, depth] and not np.any(taken[:depth] == candidate):
-                sums[depth + 1] = sums[depth] + terms[candidate, depth]
-                if _distance(sums[depth + 1]) <= gates[count[depth]]:
-                    break
-            candidate += 1
-        if candidate < fixed:
-            taken[depth] = candidate
-            count[depth + 1] = count[depth] + 1
         else:
-            taken[depth] = -1
-            sums[depth + 1] = sums[depth]
-            count[depth + 1] = count[depth]
-        depth += 1
-    pairs = np.empty((most, 2), dtype=np.int64)
-    k = 0
-    for j in range(moving):
-        if best[j] >= 0:
-            pairs[k, 0], pairs[k, 1] = best[j], j
-            k += 1
-    return pairs[:k]
+            taken[depth] = _next_partner(alike, terms, sums, taken, depth, gates[count[depth]])
+            count[depth + 1] = count[depth] + (taken[depth] >= 0)
+            depth += 1
+    return best
+
+
+@compiled
+def _next_partner(alike: Booleans, terms: Floats, sums: Floats, taken: Integers, depth: int, gate: float) -> int:
+    """The next free fixed knot that fits the branch so far, −1 when all were tried; leaves the branch's sums below."""
+    candidate = 0 if taken[depth] == -2 else taken[depth] + 1
+    while candidate < alike.shape[0]:
+        if alike[candidate, depth] and not np.any(taken[:depth] == candidate):
+            sums[depth + 1] = sums[depth] + terms[candidate, depth]
+            if _distance(sums[depth + 1]) <= gate:
+                return int(candidate)
+        candidate += 1
+    sums[depth + 1] = sums[depth]
+    return -1
 
 
 @compiled

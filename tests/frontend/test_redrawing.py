@@ -1,0 +1,42 @@
+import numpy as np
+import pytest
+
+from frontend.infrared_edges import Opening, infrared_edges, pair_edges
+from frontend.redrawing import opening_arc, why_closed
+from frontend.scan import Floats, Scan, Sensor
+from tests.frontend.rooms import turn
+
+FEET = 0.3048
+SENSOR = Sensor("sonar_infrared", max_range=35 * FEET, half_beam=np.radians(10), infrared_range=10 * FEET)
+
+
+def silent_between(degrees: float, ranges: Floats) -> tuple[Opening, Scan]:
+    """The one gap of a scan in which the infrared is silent within so many degrees of straight ahead."""
+    infrared = np.where(np.abs(turn(256)) < np.radians(degrees), 30, 31).astype(np.int16)
+    scan = Scan(turn(256), ranges, SENSOR, np.zeros(3), 0.0, infrared)
+    openings, _ = pair_edges(infrared_edges(scan), scan)
+    return openings[0], scan
+
+
+def test_a_gap_the_sonar_cannot_see_is_drawn_at_the_infrareds_horizon() -> None:
+    opening, scan = silent_between(8, np.full(256, 2.0))
+    assert why_closed(opening, scan.ranges, scan, 0.15) is None
+    assert np.allclose(opening_arc(opening, scan.ranges, scan), 10 * FEET)
+
+
+def test_a_gap_the_sonar_looks_through_keeps_what_it_sees_beyond_the_horizon() -> None:
+    ranges = np.where(np.abs(turn(256)) < np.radians(50), 5.0, 2.0)
+    opening, scan = silent_between(50, ranges)
+    assert why_closed(opening, scan.ranges, scan, 0.15) is None
+    assert np.allclose(opening_arc(opening, scan.ranges, scan), 5.0)
+
+
+@pytest.mark.parametrize("wall", [2.95, 3.0, 3.04])
+def test_a_wall_at_the_horizon_only_fades_out(wall: float) -> None:
+    opening, scan = silent_between(8, np.full(256, wall))
+    assert "fades out" in str(why_closed(opening, scan.ranges, scan, 0.15))
+
+
+def test_a_surface_that_the_infrared_cannot_feel_is_no_opening() -> None:
+    opening, scan = silent_between(60, np.full(256, 2.0))
+    assert "sees a surface 2.00 m away" in str(why_closed(opening, scan.ranges, scan, 0.15))
