@@ -25,7 +25,7 @@ from slam.recordings import open_recording
 from slam.result_folder import Source, read_report, report_of, story_of, write_report, write_result
 from slam.room_file import free_space
 from slam.scoring import map_scores, pose_scores, relation_scores
-from slam.settings import Settings
+from slam.settings import Settings, knowing
 from slam.simulation.record import Recipe
 from slam.simulation.record import simulate as simulate_recording
 from slam.story import Story
@@ -64,6 +64,7 @@ def merge(
     check_place(to)
     opinions = Settings() if settings is None else toml_file.load(settings, Settings)
     drive = open_recording(recording, format_name, strict=strict)
+    opinions = knowing(opinions, drive.odometry_noise)
     merged = merge_scans(_progress(drive.scans), opinions)
     paths, trouble = tour_or_reason(merged.room.safety, merged.estimate.poses[0], opinions.planning)
     report = report_of(merged, drive, Source(recording, format_name), paths) | {"tour": trouble}

@@ -8,7 +8,7 @@ from slam.pipeline import Merged, merge_scans
 from slam.recordings import open_recording
 from slam.room_file import free_space
 from slam.scoring import overlap, raw_free_space, visible
-from slam.settings import Settings
+from slam.settings import Settings, knowing
 from slam.trajectory_file import read_trajectory
 
 FOLDER = Path(__file__).parents[2] / "datasets" / "flynn_basement"
@@ -19,12 +19,13 @@ Row = dict[str, Any]
 
 def rows() -> list[Row]:
     """Overlap of the merged map beside that of the raw boundaries, and seconds per stage."""
-    scans = open_recording(FOLDER).scans
-    merge_scans(scans, Settings())  # compiles
+    recording = open_recording(FOLDER)
+    scans, settings = recording.scans, knowing(Settings(), recording.odometry_noise)
+    merge_scans(scans, settings)  # compiles
     runs, seconds = [], []
     for _ in range(RUNS):
         clock = perf_counter()
-        runs.append(merge_scans(scans, Settings()))
+        runs.append(merge_scans(scans, settings))
         seconds.append(perf_counter() - clock)
     merged = runs[0]
     free, _ = free_space(FOLDER / "truth.geojson", "free")

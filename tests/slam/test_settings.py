@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 
-from slam.settings import Settings
+from slam.readers.recording import OdometryNoise
+from slam.settings import Settings, knowing
 
 
 def leaves(branch: Any, path: str = "") -> Iterator[tuple[str, Any]]:
@@ -36,3 +37,11 @@ def test_settings_are_values() -> None:
 def test_settings_cannot_be_written_into() -> None:
     with pytest.raises(FrozenInstanceError):
         Settings().poses.tracking.recent = 3  # type: ignore[misc]
+
+
+def test_what_a_recording_knows_of_its_wheels_outweighs_the_opinion() -> None:
+    told = knowing(Settings(), OdometryNoise(0.01, 0.02, 0.03))
+    assert (told.poses.odometry.distance_noise, told.poses.odometry.turn_noise) == (0.01, 0.02)
+    assert told.poses.odometry.turn_per_metre == 0.03
+    assert told.poses.loops == Settings().poses.loops
+    assert knowing(Settings(), None) == Settings()

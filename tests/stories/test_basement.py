@@ -1,12 +1,18 @@
 """The paper's story through the command line: three scans of a basement become a scored map with planned paths."""
 
 import json
+from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
+import shapely
+from shapely import MultiPolygon, box
+from shapely.affinity import rotate, translate
 
+from frontend.scan import Floats
 from slam.result_folder import story_of
-from slam.room_file import read_room
+from slam.room_file import free_space, read_room
 from slam.trajectory_file import read_trajectory
 from tests.stories.command_line import run
 
@@ -18,6 +24,23 @@ def result(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("basement") / "run"
     assert run("merge", BASEMENT, "--out", folder).code == 0
     return folder
+
+
+def swept(poses: Floats, length: float, width: float) -> shapely.Geometry:
+    """The ground a rectangle covers on its way through poses (p, 3), in steps of a centimetre or a degree."""
+    grounds = []
+    for start, end in pairwise(poses):
+        move = end - start
+        move[2] = np.arctan2(np.sin(move[2]), np.cos(move[2]))
+        steps = int(max(np.hypot(*move[:2]) / 0.01, abs(move[2]) / np.radians(1))) + 1
+        for x, y, heading in start + np.linspace(0, 1, steps + 1)[:, None] * move:
+            body = rotate(box(-length / 2, -width / 2, length / 2, width / 2), heading, (0, 0), use_radians=True)
+            grounds.append(translate(body, x, y))
+    return shapely.union_all(grounds)
+
+
+def true_free_space() -> MultiPolygon:
+    return free_space(BASEMENT / "truth.geojson", "free")[0]
 
 
 def test_a_result_holds_map_trajectory_report_settings_and_figures(result: Path) -> None:
@@ -53,6 +76,7 @@ def test_both_planners_find_a_path_on_the_map(result: Path, tmp_path: Path, plan
     assert len(answer["poses"]) >= 2
     line = json.loads((tmp_path / "path.geojson").read_text())["features"][0]
     assert line["properties"]["length"] == pytest.approx(answer["length"])
+    assert shapely.within(swept(np.array(answer["poses"]), 0.3, 0.2), true_free_space())
 
 
 def test_no_path_is_no_error_but_no_success_either(result: Path) -> None:
