@@ -12,7 +12,7 @@ from frontend.fusion import FusedScan, FusionSettings, fuse
 from frontend.scan import Floats, Scan, Sensor
 from tests.frontend.rooms import first_echoes, true_ranges, turn
 
-FEET, READINGS, WALL = 0.3048, 256, 0.12
+FEET, READINGS, WALL, YARD = 0.3048, 256, 0.12, 4.0
 INFRARED = 10 * FEET
 
 
@@ -70,8 +70,8 @@ def _door_room(rng: np.random.Generator, half_beam: float) -> DoorRoom:
         x, y = rng.uniform(0.5, width - 1.2), depth - 0.45
         inside = inside.difference(box(x, y, x + 0.8, depth + 0.01))
         jambs = [door for door in jambs if not _blocked(door, x, y, depth)]
-    yard = outer.buffer(1.02 * INFRARED, join_style="mitre").difference(outer)  # too deep for the infrared
-    passages = [shapely.MultiPoint(door).buffer(0.0).envelope.union(_passage(door, width, depth)) for door in jambs]
+    yard = outer.buffer(YARD, join_style="mitre").difference(outer)
+    passages = [_passage(door, width, depth) for door in jambs]
     world = shapely.union_all([inside, yard, *passages])
     pose = np.array([*rng.uniform([1.0, 0.9], [width - 1.0, depth - 0.9]), rng.uniform(-np.pi, np.pi)])
     return _seen(world, pose, jambs, half_beam, rng)

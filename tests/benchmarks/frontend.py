@@ -81,16 +81,16 @@ def polyline_rows() -> list[Row]:
     for method in methods.values():
         method(rays[0], 10)  # compiles
     found = []
-    note = "mean over scans of the RMS along the rays, all returns; ours is exact over all choices of readings"
-    for count in (10, 20, 30):
+    note = "mean over scans of the RMS along the rays, every return counted; the target was measured on unknown terms"
+    for count, target in ((10, 0.087), (20, 0.055), (30, 0.031)):
         errors, seconds = {}, {}
         for name, method in methods.items():
             clock = perf_counter()
             lines = [method(ends, count) for ends in rays]
             seconds[name] = 1e3 * (perf_counter() - clock) / len(rays)
             errors[name] = float(np.mean([radial_rms(ends, line) for ends, line in zip(rays, lines, strict=True)]))
-        best, fastest = errors["maximum likelihood"], seconds["maximum likelihood"]
-        found.append(row(f"polyline error at {count} vertices", errors, "m", "lower", best, note))
+        fastest = seconds["maximum likelihood"]
+        found.append(row(f"polyline error at {count} vertices", errors, "m", "lower", target, note))
         found.append(row(f"polyline time at {count} vertices", seconds, "ms", "lower", fastest, "one core"))
     return found
 

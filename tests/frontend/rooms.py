@@ -26,7 +26,7 @@ def turn(n: int) -> Floats:
 
 def true_ranges(room: BaseGeometry, pose: Floats, bearings: Floats) -> tuple[Floats, Integers]:
     """Range (n,) along each bearing to the walls of the room, and which wall (n,) it met."""
-    rings = [np.asarray(ring.coords) for ring in shapely.get_rings(room)]
+    rings = [np.asarray(ring.coords) for ring in shapely.get_rings(shapely.get_parts(room))]
     starts = np.vstack([ring[:-1] for ring in rings]) - pose[:2]
     along = np.vstack([np.diff(ring, axis=0) for ring in rings])
     beams = np.column_stack([np.cos(bearings + pose[2]), np.sin(bearings + pose[2])])
@@ -64,5 +64,5 @@ def sketched(room: BaseGeometry, pose: Floats, seed: int = 0) -> PrimalSketch:
 
 def corners_of(room: BaseGeometry, pose: Floats) -> Floats:
     """The room's corners (c, 2) in the robot's frame."""
-    corners = np.vstack([np.asarray(ring.coords)[:-1] for ring in shapely.get_rings(room)])
+    corners = np.vstack([np.asarray(ring.coords)[:-1] for ring in shapely.get_rings(shapely.get_parts(room))])
     return transform(corners - pose[:2], np.array([0.0, 0.0, -pose[2]]))
