@@ -170,4 +170,12 @@ def _poses(chain: Chain) -> Floats:
     poses = np.concatenate([np.column_stack([points[:-1], headings]), np.column_stack([points[1:], headings])], axis=1)
     flat = poses.reshape(-1, 3)
     moved = np.concatenate([[True], np.abs(np.diff(flat, axis=0)).max(axis=1) > 0])
-    return np.asarray(flat[moved])
+    return _without_waypoints(flat[moved])
+
+
+def _without_waypoints(poses: Floats) -> Floats:
+    """Poses (k, 3) without those at which neither the direction nor the heading changes."""
+    moves = np.diff(poses, axis=0)
+    units = moves / np.linalg.norm(moves, axis=1, keepdims=True)
+    bends = np.abs(np.diff(units, axis=0)).max(axis=1, initial=0) > 1e-9
+    return np.asarray(poses[np.concatenate([[True], bends, [True]])] if len(poses) > 1 else poses)
