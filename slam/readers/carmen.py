@@ -36,7 +36,7 @@ def read_carmen(path: Path, strict: bool) -> Recording:
         )
     sensor = Sensor("lidar", max_range=_limit(scans, path), mount=(_front_laser_offset(lines), 0.0, 0.0))
     seen = [_with_returns(scan, sensor, time) for scan, time in zip(scans, times.tolist(), strict=True)]
-    trail, damaged = _odometry(lines, path, strict)
+    trail, damaged = _odometry(lines, seen, path, strict)
     return Recording(path.name.split(".")[0], tuple(seen), (*sieve.damaged, *damaged), odometry=trail)
 
 
@@ -61,7 +61,7 @@ def half_turn_bearings(beams: int) -> Floats:
     Odd counts (181, 361) reach from −90° to +90° in whole or half degrees; an even count (180, 360) keeps the step of
     the scanner and lacks the last beam, for steps of 180°/179 exist in no device.
     """
-    step = np.pi / (beams if beams % 2 == 0 else beams - 1)
+    step = np.pi / (beams if beams % 2 == 0 else max(beams - 1, 1))
     return -np.pi / 2 + step * np.arange(beams, dtype=np.float64)
 
 
@@ -104,16 +104,21 @@ def _robotlaser(text: str, strict: bool) -> Scan:
 PARSERS = {"FLASER": _flaser, "ROBOTLASER1": _robotlaser}
 
 
-def _odometry(lines: list[tuple[int, str]], path: Path, strict: bool) -> tuple[Trajectory | None, list[DamagedLine]]:
-    """Every ODOM line (x, y, heading, two speeds, acceleration, time), and the damaged ones; None without any."""
+def _odometry(
+    lines: list[tuple[int, str]], scans: list[Scan], path: Path, strict: bool
+) -> tuple[Trajectory | None, list[DamagedLine]]:
+    """Every ODOM line (x, y, heading, two speeds, acceleration, time) among the scans' own odometry, by time.
+
+    Also the damaged lines; None where the log has no ODOM line.
+    """
     sieve = Sieve(path, strict=strict)
     rows = list(sieve.through([(n, text) for n, text in lines if text.startswith("ODOM ")], _odom))
     if not rows:
         return None, sieve.damaged
-    places = np.array(rows)
-    later = places[:, 3] > np.maximum.accumulate(np.concatenate([[-np.inf], places[:-1, 3]]))
-    kept = places[later]
-    return Trajectory(kept[:, 3], kept[:, :2], kept[:, 2]), sieve.damaged
+    # A scan's own odometry comes first, so that it holds where an ODOM line has the same time.
+    places = np.array([*([*scan.odometry, scan.time] for scan in scans), *rows])
+    times, kept = np.unique(places[:, 3], return_index=True)
+    return Trajectory(times, places[kept, :2], places[kept, 2]), sieve.damaged
 
 
 def _odom(text: str) -> Floats:
