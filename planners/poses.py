@@ -29,7 +29,7 @@ def standing(world: World, robot: Robot, pose: Pose, name: str) -> Floats:
     if not world.free.covers(point):
         raise PlanningError(f"{place} lies {world.free.distance(point):.3g} m outside of free space")
     if robot.is_disc:
-        room = world.free.boundary.distance(point)
+        room = float(shapely.distance(world.boundary, point))
         if room <= robot.radius:
             raise PlanningError(
                 f"{place} has {room:.3g} m to the nearest obstacle, but the robot needs {robot.radius:g}"

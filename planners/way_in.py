@@ -57,8 +57,15 @@ def _way(body: Body, piece: Floats) -> tuple[Floats, Floats, Floats]:
 def _cost(body: Body, piece: Floats) -> float:
     """Length of a piece (4,), times up to 1 + caution where it is tight."""
     room = body.width
+    low_x, high_x = min(piece[0], piece[2]) - room, max(piece[0], piece[2]) + room
+    low_y, high_y = min(piece[1], piece[3]) - room, max(piece[1], piece[3]) + room
     for k in range(body.ends.shape[0]):
-        room = min(room, nearest(piece, body.ends[k])[2])
+        wall = body.ends[k]
+        if min(wall[0], wall[2]) > high_x or max(wall[0], wall[2]) < low_x:
+            continue
+        if min(wall[1], wall[3]) > high_y or max(wall[1], wall[3]) < low_y:
+            continue
+        room = min(room, nearest(piece, wall)[2])
     tightness = min(max(2 - 2 * room / body.width, 0.0), 1.0)
     return float(np.hypot(piece[2] - piece[0], piece[3] - piece[1]) * (1 + body.caution * tightness))
 

@@ -73,6 +73,11 @@ class World:
         """(m,) distance of each edge's line from the origin along its normal: n · p."""
         return np.asarray(np.einsum("ij,ij->i", self.normals, self.edges[:, 0]))
 
+    @cached_property
+    def boundary(self) -> shapely.Geometry:
+        """All rings of the free space."""
+        return self.free.boundary
+
     @property
     def bounds(self) -> tuple[float, float, float, float]:
         """Least x and y, greatest x and y."""
