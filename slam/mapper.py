@@ -239,6 +239,9 @@ class Mapper:
 
     def _verify(self, candidate: Candidate) -> Alignment | str:
         beside, newest = self.settings.verification.beside, self._keyframes[-1]
+        # Its neighbours' surface would be matched, but the loop would tie a pose that nothing holds to them.
+        if len(self._keyframes[candidate.pose].percept.surface.points) < self.settings.tracking.least_faces:
+            return "the old scan has no surface of its own"
         around = self._keyframes[max(0, candidate.pose - beside) : candidate.pose + beside + 1]
         old = Faces.together([keyframe.faces for keyframe in around])
         recent = Faces.together([keyframe.faces for keyframe in self._keyframes[-beside:]])

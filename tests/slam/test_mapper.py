@@ -191,3 +191,10 @@ def test_scans_of_a_robot_that_stands_share_one_keyframe() -> None:
     standing = mapped(drive(round_building(), np.repeat(pose, 8, axis=0), seed=2))
     assert len(standing.keyframes) == 1
     assert np.max(np.abs(standing.poses[:, :2])) < 0.02
+
+
+def test_no_loop_is_closed_on_a_scan_that_saw_nothing(scans: list[Scan]) -> None:
+    blind = replace(scans[0], ranges=np.full(scans[0].ranges.size, np.inf))
+    closed = loops(mapped([blind, *scans[1:]]))
+    assert len(closed) > 3
+    assert all(0 not in pair for pair in closed)
