@@ -16,7 +16,7 @@ class LandmarkSettings:
     gate: float = 11.8  # squared Mahalanobis distance (χ², 2 degrees of freedom, 0.3 %); larger matches farther off
     doubt: float = 0.05  # metres of placement doubt added to the knot's own; larger matches farther off
     alike: float = 0.35  # radians that turn and heading may differ; larger confuses neighbouring corners
-    proven: int = 3  # sightings before a landmark ties poses; larger keeps fewer, surer ones
+    proven: int = 2  # sightings before a landmark ties poses; larger keeps fewer, surer ones
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +53,11 @@ class LandmarkMap:
     def counts(self) -> Integers:
         """How often each landmark was seen, (l,)."""
         return np.array([len(seen) for seen in self._sightings], np.int64)
+
+    @property
+    def unproven(self) -> list[tuple[int, ...]]:
+        """The poses that saw a knot which never became a landmark, knot by knot."""
+        return [tuple(one.pose for one in seen) for seen in self._sightings if len(seen) < self.settings.proven]
 
     def see(self, pose_index: int, pose: Floats, knots: Knots) -> list[Sighting]:
         """Match the knots seen at `pose` (3,); the sightings that are worth a factor now (old ones once proven)."""

@@ -118,8 +118,10 @@ def parse_robot(text: str) -> Robot:
         raise RobotError(
             f'"{numbers}" in "{text}" is not made of numbers; say disc:0.2 or rectangle:0.5x0.4'
         ) from trouble
-    if len(sizes) != wanted[kind] or not np.isfinite(sizes).all():
-        raise RobotError(f'a {kind} has {wanted[kind]} finite sizes, but "{text}" has {len(sizes)}')
+    if not np.isfinite(sizes).all():
+        raise RobotError(f'"{text}" has a size that is not finite')
+    if len(sizes) != wanted[kind]:
+        raise RobotError(f'a {kind} has {wanted[kind]} sizes, but "{text}" has {len(sizes)}')
     return Robot.disc(*sizes) if kind == "disc" else Robot.rectangle(*sizes)
 
 

@@ -259,8 +259,13 @@ class Mapper:
         self._drift.add(fixed, newest, covariance)
 
     def _doubted(self) -> list[Decision]:
-        """Loops that the rest of the graph contradicts."""
-        doubted = []
+        """Loops that the rest of the graph contradicts, and knots that were not seen often enough to be landmarks."""
+        needed = self.settings.landmarks.proven
+        doubted = [
+            Decision("landmark", tuple(self._keyframes[k].scan for k in poses), accepted=False, reason=reason)
+            for poses in self._landmarks.unproven
+            for reason in [f"a corner seen {len(poses)} times, but a landmark needs {needed} sightings"]
+        ]
         for fixed, moving, sigmas in self._graph.loop_residuals():
             if sigmas > 5:
                 scans = (self._keyframes[fixed].scan, self._keyframes[moving].scan)

@@ -74,8 +74,10 @@ def parse_pose(text: str) -> Floats:
         numbers = [float(part) for part in text.split(",")]
     except ValueError as damage:
         raise PlanningError(f"{text!r} is no X,Y[,HEADING]: {damage}") from damage
-    if len(numbers) not in (2, 3) or not np.isfinite(numbers).all():
-        raise PlanningError(f"{text!r} has {len(numbers)} parts, but X,Y or X,Y,HEADING of finite numbers is needed")
+    if not np.isfinite(numbers).all():
+        raise PlanningError(f"{text!r} holds a number that is not finite, but X,Y or X,Y,HEADING is needed")
+    if len(numbers) not in (2, 3):
+        raise PlanningError(f"{text!r} has {len(numbers)} parts, but X,Y or X,Y,HEADING is needed")
     return np.array([*numbers, np.nan][:3])
 
 

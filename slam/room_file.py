@@ -68,7 +68,9 @@ def free_space(path: Path, layer: str) -> tuple[MultiPolygon, str]:
     kinds = {str(properties.get("kind")) for _, properties in features}
     taken = next((kind for kind in (layer, "free", "boundary") if kind in kinds), None)
     if taken is None:
-        raise RoomFileError(f"{path}: no feature of kind safety, free or boundary, only {', '.join(sorted(kinds))}")
+        raise RoomFileError(
+            f"{path}: no feature of kind safety, free or boundary, only {', '.join(sorted(kinds)) or 'none at all'}"
+        )
     outline = _area(_of_kind(features, taken))
     if taken == "boundary":
         outline = _polygons(outline.difference(_area(_of_kind(features, "obstacle", "wall"))))
@@ -83,8 +85,9 @@ def points_of_kind(features: Iterable[tuple[BaseGeometry, Properties]], kind: st
 
 
 def _features(room: RoomMap, landmarks: Floats) -> Iterable[dict[str, Any]]:
-    yield _feature(room.free, {"kind": "free"})
-    yield _feature(room.safety, {"kind": "safety"})
+    views = sorted({int(view) for edge in room.edges for view in edge.views})
+    yield _feature(room.free, {"kind": "free", "support": len(views), "views": views})
+    yield _feature(room.safety, {"kind": "safety", "support": len(views), "views": views})
     for edge in room.edges:
         provenance = {"support": edge.support, "contradictions": edge.contradictions, "spread": _rounded(edge.spread)}
         line = LineString([edge.start, edge.end])
