@@ -1,6 +1,6 @@
 """Registration: where a scan's surface lies on a local map, point to line, with the covariance of the answer.
 
-One scan on a map is compiled code (0.3 ms a pass, and its Hessian gives the covariance). Whole submaps, which need no
+One scan on a map is compiled code, whose Hessian gives the covariance. Whole submaps, which need no
 covariance, go through open3d, which stays behind this door.
 """
 
