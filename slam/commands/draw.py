@@ -1,0 +1,16 @@
+"""`roomsketch draw`: the figures of a result, drawn again."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from slam import figures
+from slam.commands.console import out
+from slam.result_folder import story_of
+
+
+def draw(result: Annotated[Path, typer.Argument(help="The folder that merge wrote.")]) -> None:
+    """Draw the figures of a result again, from its files and its recording."""
+    figures.draw(story_of(result), result / "figures")
+    out.print(f"{result / 'figures'}: {', '.join(figures.FIGURES)}")
