@@ -8,18 +8,25 @@ BIN := .venv/bin
 RECORDING ?= datasets/flynn_basement
 OUT ?= build/map
 
-.PHONY: map test fix bench lock clean
+.PHONY: map test browser fix bench lock clean
 
 map: .venv/ready
 	$(BIN)/roomsketch merge $(RECORDING) --out $(OUT)
 	$(BIN)/roomsketch score $(OUT) --truth $(RECORDING)/truth.geojson --poses $(RECORDING)/true.tum
 
-test: .venv/ready
+test: .venv/ready browser
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 2
+
+# The page is tested in a real browser: Debian's where root may install it, else one that playwright fetches.
+browser: .venv/ready
+	@command -v chromium >/dev/null \
+	    || { [ "$$(id -u)" = 0 ] && apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends chromium >/dev/null; } \
+	    || $(BIN)/playwright install chromium \
+	    || echo "no chromium, and none could be fetched: the tests of the page will be skipped"
 
 fix: .venv/ready
 	$(BIN)/ruff format .
