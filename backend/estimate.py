@@ -19,10 +19,31 @@ class Decision:
 
 
 @dataclass(frozen=True, eq=False)
+class Tie:
+    """`moving` was found at `pose` (3,) in the frame of `fixed`, both keyframe numbers; information (3, 3) in moving's axes."""
+
+    fixed: int
+    moving: int
+    pose: Floats
+    information: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class LandmarkTie:
+    """Keyframe `pose` saw the landmark at `position` (2,) in its own frame; information (2, 2) in the same axes."""
+
+    pose: int
+    landmark: int
+    position: Floats
+    information: Floats
+
+
+@dataclass(frozen=True, eq=False)
 class Estimate:
     """poses (n, 3) in the frame of the first, covariances (n, 3, 3) in each pose's own axes, landmarks (l, 2),
     sightings (l,) of each landmark, keyframes (k,) scan indices that carry the graph, decisions in their order,
-    calibration: the robot's constants as learnt from the log.
+    calibration: the robot's constants as learnt from the log. ties, landmark_ties: the factors of the graph, between
+    places in `keyframes` and in `landmarks`.
     """
 
     poses: Floats
@@ -32,3 +53,5 @@ class Estimate:
     keyframes: NDArray[np.int64]
     decisions: tuple[Decision, ...]
     calibration: dict[str, float]
+    ties: tuple[Tie, ...] = ()
+    landmark_ties: tuple[LandmarkTie, ...] = ()

@@ -11,6 +11,8 @@ import numpy as np
 from gtsam.symbol_shorthand import L, X
 from numpy.typing import NDArray
 
+from backend.estimate import LandmarkTie, Tie
+
 Floats = NDArray[np.float64]
 
 
@@ -40,6 +42,8 @@ class FactorGraph:
         self._loops: list[tuple[int, int, gtsam.Pose2, Floats]] = []
         self._poses: list[int] = []
         self.landmark_indices: list[int] = []
+        self.ties: list[Tie] = []
+        self._sightings: list[tuple[int, int, Floats, Floats]] = []
 
     @property
     def poses(self) -> Floats:
@@ -50,6 +54,12 @@ class FactorGraph:
     def landmarks(self) -> Floats:
         """(l, 2) current estimates, in the order they were added."""
         return np.array([self._values.atPoint2(L(i)) for i in self.landmark_indices]).reshape(-1, 2)
+
+    @property
+    def landmark_ties(self) -> list[LandmarkTie]:
+        """Every sighting, its landmark by its place in `landmarks`."""
+        place = {index: k for k, index in enumerate(self.landmark_indices)}
+        return [LandmarkTie(pose, place[index], *seen) for pose, index, *seen in self._sightings]
 
     def add_pose(self, index: int, pose: Floats) -> None:
         """A new pose at its first guess (3,)."""
@@ -64,15 +74,17 @@ class FactorGraph:
     def add_motion(self, fixed: int, moving: int, pose: Floats, covariance: Floats) -> None:
         """`moving` was seen or driven to be at `pose` (3,) in the frame of `fixed`."""
         self._add_between(fixed, moving, pose, _noise(covariance))
+        self.ties.append(Tie(fixed, moving, pose, _information(covariance)))
 
     def add_loop(self, fixed: int, moving: int, pose: Floats, covariance: Floats) -> None:
         """As `add_motion`, but it may be wrong: it loses its weight when the rest of the graph contradicts it."""
         self._check_pose(fixed)
         self._check_pose(moving)
         cauchy = gtsam.noiseModel.mEstimator.Cauchy.Create(self.settings.loop_width)
-        information = np.asarray(np.linalg.inv(covariance), np.float64)
+        information = _information(covariance)
         self._loops.append((fixed, moving, gtsam.Pose2(*pose), information))
         self._add_between(fixed, moving, pose, gtsam.noiseModel.Robust.Create(cauchy, _noise(covariance)))
+        self.ties.append(Tie(fixed, moving, pose, information))
 
     def add_landmark(self, index: int, position: Floats) -> None:
         """A new landmark at its first guess (2,)."""
@@ -93,6 +105,7 @@ class FactorGraph:
         noise = gtsam.noiseModel.Robust.Create(huber, _noise(turned @ covariance @ turned.T))
         bearing = gtsam.Rot2(float(np.arctan2(position[1], position[0])))
         self._graph.add(gtsam.BearingRangeFactor2D(X(pose), L(landmark), bearing, distance, noise))
+        self._sightings.append((pose, landmark, position, _information(covariance)))
 
     def mend(self) -> None:
         """Let the incremental solver (ISAM2) take in what is new."""
@@ -149,6 +162,10 @@ def _tree_parameters() -> gtsam.ISAM2Params:
 
 def _noise(covariance: Floats) -> gtsam.noiseModel.Base:
     return gtsam.noiseModel.Gaussian.Covariance(np.asarray(covariance, float))
+
+
+def _information(covariance: Floats) -> Floats:
+    return np.asarray(np.linalg.inv(covariance), np.float64)
 
 
 def _plain(pose: gtsam.Pose2) -> Floats:

@@ -131,6 +131,8 @@ class Mapper:
                 "sensor forward": float(forward),
                 "sensor left": float(left),
             },
+            ties=tuple(self._graph.ties),
+            landmark_ties=tuple(self._graph.landmark_ties),
         )
 
     def _refined(self) -> Floats:
