@@ -4,6 +4,7 @@ gtsam stays behind this door; keys are plain indices, poses are (3,) arrays, cov
 axes.
 """
 
+from copy import copy
 from dataclasses import dataclass
 
 import gtsam
@@ -124,6 +125,12 @@ class FactorGraph:
         parameters.setRelativeErrorTol(1e-6)
         parameters.setlambdaInitial(1e-6)
         self._values = gtsam.LevenbergMarquardtOptimizer(self._graph, self._values, parameters).optimize()
+
+    def solved(self) -> "FactorGraph":
+        """The same factors with everything at its best; this graph keeps the estimates it has."""
+        best = copy(self)
+        best.solve()
+        return best
 
     def loop_residuals(self) -> list[tuple[int, int, float]]:
         """(fixed, moving, residual in sigmas) of every loop at the current estimate."""

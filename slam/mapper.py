@@ -70,7 +70,6 @@ class Mapper:
         self._keyframes: list[_Keyframe] = []
         self._relative: list[tuple[int, Floats]] = []  # keyframe and pose in its frame, one per scan
         self._decisions: list[Decision] = []
-        self._unsolved = False
         self._slipped = False  # whether the wheels disagreed since the last keyframe
         self._way = np.zeros(2)  # metres and radians since loops were last searched
 
@@ -105,25 +104,22 @@ class Mapper:
         for keyframe, pose in zip(self._keyframes, self._graph.poses, strict=True):
             keyframe.pose = pose
         self._landmarks.positions[self._graph.landmark_indices] = self._graph.landmarks
-        self._unsolved = False
 
     def result(self) -> Estimate:
-        """The estimate after all scans so far."""
+        """The estimate after all scans so far; what comes later is the same whether it was asked for or not."""
         clock = perf_counter()
-        if self._unsolved:
-            self._graph.solve()
-            self._settle()
-        covariances = self._graph.covariances()
-        poses = self._refined()
+        graph = self._graph.solved()
+        covariances = graph.covariances()
+        poses = self._refined(graph.poses)
         self._tick("graph", clock)
         scale, turn_scale, turn_per_metre, forward, left = self._odometry.calibration
         return Estimate(
             poses=np.array([compose(poses[k], step) for k, step in self._relative]).reshape(-1, 3),
             covariances=covariances[np.array([k for k, _ in self._relative], np.int64)],
-            landmarks=self._graph.landmarks,
-            sightings=self._landmarks.counts[self._graph.landmark_indices],
+            landmarks=graph.landmarks,
+            sightings=self._landmarks.counts[graph.landmark_indices],
             keyframes=np.array([keyframe.scan for keyframe in self._keyframes]),
-            decisions=(*self._decisions, *self._doubted()),
+            decisions=(*self._decisions, *self._doubted(graph)),
             calibration={
                 "metres per metre": float(scale),
                 "radians per radian": float(turn_scale),
@@ -131,13 +127,12 @@ class Mapper:
                 "sensor forward": float(forward),
                 "sensor left": float(left),
             },
-            ties=tuple(self._graph.ties),
-            landmark_ties=tuple(self._graph.landmark_ties),
+            ties=tuple(graph.ties),
+            landmark_ties=tuple(graph.landmark_ties),
         )
 
-    def _refined(self) -> Floats:
+    def _refined(self, poses: Floats) -> Floats:
         """Poses (k, 3) of the keyframes after all faces and the wheels were solved together."""
-        poses = np.array([keyframe.pose for keyframe in self._keyframes]).reshape(-1, 3)
         if len(poses) < 2:
             return poses
         surfaces = [keyframe.percept.surface for keyframe in self._keyframes]
@@ -151,8 +146,8 @@ class Mapper:
         driven = [self._driven(old, new) for old, new in pairwise(self._keyframes)]
         # Where the wheels slipped, the graph knows the move, and the wheels only how much may be believed.
         moves = [
-            between(old.pose, new.pose) if new.slipped else move.pose
-            for (old, new), move in zip(pairwise(self._keyframes), driven, strict=True)
+            between(poses[k], poses[k + 1]) if self._keyframes[k + 1].slipped else move.pose
+            for k, move in enumerate(driven)
         ]
         chain = Chain(np.array(moves), np.array([move.covariance for move in driven]))
         return refine(poses, sheaf, chain, self.settings.refinement)
@@ -207,7 +202,6 @@ class Mapper:
         self._way += np.array([np.hypot(*step[:2]), abs(step[2])])
         self._relative.append((new, np.zeros(3)))
         self._see_landmarks(percept, placed.pose)
-        self._unsolved = True
 
     def _see_landmarks(self, percept: Percept, pose: Floats) -> None:
         for sighting in self._landmarks.see(len(self._keyframes) - 1, pose, percept.knots):
@@ -260,7 +254,7 @@ class Mapper:
         self._graph.add_loop(fixed, newest, pose, covariance)
         self._drift.add(fixed, newest, covariance)
 
-    def _doubted(self) -> list[Decision]:
+    def _doubted(self, graph: FactorGraph) -> list[Decision]:
         """Loops that the rest of the graph contradicts, and knots that were not seen often enough to be landmarks."""
         needed = self.settings.landmarks.proven
         doubted = [
@@ -268,7 +262,7 @@ class Mapper:
             for poses in self._landmarks.unproven
             for reason in [f"a corner seen {len(poses)} times, but a landmark needs {needed} sightings"]
         ]
-        for fixed, moving, sigmas in self._graph.loop_residuals():
+        for fixed, moving, sigmas in graph.loop_residuals():
             if sigmas > 5:
                 scans = (self._keyframes[fixed].scan, self._keyframes[moving].scan)
                 reason = f"the rest of the graph contradicts it by {sigmas:.1f} sigmas"
