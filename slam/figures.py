@@ -15,7 +15,6 @@ from shapely import MultiPolygon, Polygon
 from backend.room_map import MapEdgeKind, RoomMap
 from backend.view import View
 from frontend.contour import Contour, EdgeKind
-from frontend.fusion import FusedScan
 from frontend.primal_sketch import KnotKind
 from frontend.rigid_motion import transform
 from frontend.scan import Floats
@@ -110,7 +109,7 @@ def _panels(story: Story, draw_view: Callable[[Axes, Percept], None], title: str
     count = len(story.percepts)
     shown = sorted({int(scan) for scan in np.linspace(0, count - 1, min(PANELS, count)).round()})
     figure = Figure(figsize=(5 * len(shown) + 1.5, 5))
-    reach = np.concatenate([_raw_ends(story.percepts[scan].fused) for scan in shown])
+    reach = np.concatenate([story.percepts[scan].raw_ends for scan in shown])
     low, high = reach.min(axis=0), reach.max(axis=0)
     for axes, scan in zip(np.atleast_1d(figure.subplots(1, len(shown))), shown, strict=True):
         draw_view(axes, story.percepts[scan])
@@ -123,7 +122,7 @@ def _panels(story: Story, draw_view: Callable[[Axes, Percept], None], title: str
 
 
 def _draw_raw(axes: Axes, percept: Percept) -> None:
-    ring = _raw_ends(percept.fused)
+    ring = percept.raw_ends
     axes.add_patch(_patch(Polygon(ring), facecolor=FREE, edgecolor=INK, linewidth=0.8))
     lost = np.isinf(percept.fused.raw_ranges)
     axes.plot(*ring[lost].T, "x", color=FAINT, markersize=4, label="no return")
@@ -198,14 +197,6 @@ def _legend(panels: list[Axes]) -> None:
 
 def _views(story: Story) -> list[tuple[View, Floats]]:
     return [(percept.view, pose) for percept, pose in zip(story.percepts, story.poses, strict=True)]
-
-
-def _raw_ends(fused: FusedScan) -> Floats:
-    """(n, 2) ends of the raw readings; where nothing came back, the sensor's reach or what fusion put there."""
-    ranges = np.where(np.isfinite(fused.raw_ranges), fused.raw_ranges, fused.ranges)
-    bearings = fused.bearings
-    ends = ranges[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)])
-    return transform(ends, np.array(fused.scan.sensor.mount))
 
 
 def _pieces(contour: Contour, kind: EdgeKind) -> Floats:

@@ -99,6 +99,11 @@ class Mapper:
         self._tick("graph", clock)
         return self._keyframes[-1].pose
 
+    @property
+    def poses(self) -> Floats:
+        """(n, 3) where all scans so far were taken, as now believed; nothing is solved for it."""
+        return np.array([compose(self._keyframes[k].pose, step) for k, step in self._relative]).reshape(-1, 3)
+
     def _settle(self) -> None:
         """Move keyframes and landmarks to where the graph now puts them."""
         for keyframe, pose in zip(self._keyframes, self._graph.poses, strict=True):

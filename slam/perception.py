@@ -9,7 +9,8 @@ from backend.view import View
 from frontend.contour import Contour, ContourSettings, trace
 from frontend.fusion import FusedScan, FusionSettings, fuse
 from frontend.primal_sketch import PrimalSketch, SketchSettings, sketch
-from frontend.scan import Scan
+from frontend.rigid_motion import transform
+from frontend.scan import Floats, Scan
 from frontend.surface import Surface
 
 
@@ -35,6 +36,14 @@ class Percept:
     def scan(self) -> Scan:
         """The scan as it was read."""
         return self.fused.scan
+
+    @property
+    def raw_ends(self) -> Floats:
+        """(n, 2) ends of the readings as the sensor gave them; without echo, as far as fusion calls it free."""
+        fused = self.fused
+        ranges = np.where(np.isfinite(fused.raw_ranges), fused.raw_ranges, fused.ranges)
+        ends = ranges[:, None] * np.column_stack([np.cos(fused.bearings), np.sin(fused.bearings)])
+        return transform(ends, np.array(fused.scan.sensor.mount))
 
     @property
     def knots(self) -> Knots:

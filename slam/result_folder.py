@@ -90,7 +90,7 @@ def read_report(folder: Path) -> dict[str, Any]:
 
 def write_report(folder: Path, report: dict[str, Any]) -> None:
     """Put the report in its place, whole; numbers that JSON does not know become null."""
-    write_whole(folder / REPORT, json.dumps(_plain(report), indent=1, allow_nan=False) + "\n")
+    write_whole(folder / REPORT, json.dumps(plain(report), indent=1, allow_nan=False) + "\n")
 
 
 def recording_of(report: dict[str, Any]) -> Recording:
@@ -150,12 +150,12 @@ def _trail(recording: Recording) -> Trajectory:
     return Trajectory(np.array([scan.time for scan in recording.scans]), poses[:, :2], poses[:, 2])
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """The value with numpy numbers as Python's and what is not finite as None."""
     if isinstance(value, dict):
-        return {str(key): _plain(part) for key, part in value.items()}
+        return {str(key): plain(part) for key, part in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(part) for part in value]
+        return [plain(part) for part in value]
     if isinstance(value, np.generic):
-        return _plain(value.item())
+        return plain(value.item())
     return None if isinstance(value, float) and not np.isfinite(value) else value
