@@ -96,13 +96,14 @@ def _solve(scaled: csr_array, through: csr_array, wheels: csr_array, gradient: F
 
     The chain of the wheels and each pose's own block make the preconditioner; the first pose stays.
     """
-    own = (scaled.T @ scaled + wheels.T @ wheels + 1e-9 * eye_array(len(gradient))).tocsc()
-    nearly = splu(own[3:, 3:])
-    scaled, through, wheels = scaled[:, 3:], through[:, 3:], wheels[:, 3:]
-    scaled_t, through_t, wheels_t = scaled.T.tocsr(), through.T.tocsr(), wheels.T.tocsr()
+    # A point belongs to one pose, so all but the shared lines is a band of small blocks: the chain itself.
+    own = (scaled.T @ scaled + wheels.T @ wheels + 1e-9 * eye_array(len(gradient))).tocsc()[3:, 3:]
+    nearly = splu(own)
+    chain, through = own.tocsr(), through[:, 3:]
+    through_t = through.T.tocsr()
 
     def apply(v: Floats) -> Floats:
-        return np.asarray(scaled_t @ (scaled @ v) - through_t @ (through @ v) + wheels_t @ (wheels @ v))
+        return np.asarray(chain @ v - through_t @ (through @ v))
 
     shape = (len(gradient) - 3, len(gradient) - 3)
     moved, unsettled = cg(

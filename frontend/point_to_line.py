@@ -5,6 +5,9 @@ import numpy as np
 from frontend.compiled import compiled
 from frontend.scan import Floats, Integers
 
+SETTLED = 0.01  # a pass ends when a step moves no surface by more than this share of its Cauchy width
+FAR = 5.0  # metres; about where the surface lies that a turn moves
+
 
 @compiled
 def sort_into_cells(points: Floats, cell: float) -> tuple[Integers, Integers, Floats, int, int]:
@@ -31,20 +34,29 @@ def nearest_face(
     point: Floats, normal: Floats, points: Floats, normals: Floats,
     first: Integers, corner: Floats, columns: int, rows: int, limits: Floats,
 ) -> int:  # fmt: skip
-    """Index of the nearest of the cell-sorted points (k, 2), or −1. limits: cell, reach, least cosine of normals."""
-    cell, reach, alike = limits[0], limits[1], limits[2]
-    partner, best = -1, reach * reach
-    u, v = int(np.floor((point[0] - corner[0]) / cell)), int(np.floor((point[1] - corner[1]) / cell))
-    span = int(np.ceil(reach / cell))
-    low, high = max(0, v - span), min(rows, v + span + 1)
-    if low >= high:
-        return partner
-    for column in range(max(0, u - span), min(columns, u + span + 1)):
-        for j in range(first[column * rows + low], first[column * rows + high]):
-            dx, dy = points[j, 0] - point[0], points[j, 1] - point[1]
-            d = dx * dx + dy * dy
-            if d < best and normal[0] * normals[j, 0] + normal[1] * normals[j, 1] > alike:
-                partner, best = j, d
+    """Index of the nearest of the cell-sorted points (k, 2), or −1. limits: cell, reach, least cosine of normals.
+
+    Cells are looked through ring by ring, until none farther out can hold anything nearer.
+    """
+    cell, alike = limits[0], limits[2]
+    x, y = (point[0] - corner[0]) / cell, (point[1] - corner[1]) / cell
+    u, v = int(np.floor(x)), int(np.floor(y))
+    # Nothing outside a ring is nearer than the way from the point to its own cell's border, and the rings between.
+    border = min(x - u, u + 1 - x, y - v, v + 1 - y) * cell
+    partner, best = -1, limits[1] * limits[1]
+    for ring in range(int(np.ceil(limits[1] / cell)) + 1):
+        if ring > 0 and (border + (ring - 1) * cell) ** 2 >= best:
+            break
+        for column in range(max(u - ring, 0), min(u + ring + 1, columns)):
+            stride = 1 if abs(column - u) == ring else 2 * ring
+            for row in range(v - ring, v + ring + 1, stride):
+                if row < 0 or row >= rows:
+                    continue
+                for j in range(first[column * rows + row], first[column * rows + row + 1]):
+                    dx, dy = points[j, 0] - point[0], points[j, 1] - point[1]
+                    d = dx * dx + dy * dy
+                    if d < best and normal[0] * normals[j, 0] + normal[1] * normals[j, 1] > alike:
+                        partner, best = j, d
     return partner
 
 
@@ -106,7 +118,8 @@ def descend(
             offset[2] = (offset[2] + np.pi) % (2 * np.pi) - np.pi
             move = -np.linalg.solve(information + pull, gradient + pull @ offset)
             pose = pose + move
-            if abs(move[0]) + abs(move[1]) < 1e-4 and abs(move[2]) < 1e-5:
+            settled = SETTLED * passes[k, 3]
+            if abs(move[0]) + abs(move[1]) < settled and abs(move[2]) < settled / FAR:
                 break
     information, _, square, partners = linearise(
         own, own_normals, points, normals, first, corner, columns, rows, pose, passes[len(passes) - 1]

@@ -23,8 +23,8 @@ class TrackingSettings:
     visibility: VisibilitySettings = field(default_factory=VisibilitySettings)
     recent: int = 12  # keyframes in the local map; larger bridges more occlusion and drifts less, at more cost
     reach: float = 20.0  # metres of map around the robot; larger uses far walls
-    good: float = 0.8  # matched and confirmed share under which a wider search is tried; larger searches more often
-    poor: float = 0.4  # matched share under which a scan is left to odometry; larger refuses more scans
+    good: float = 0.8  # confirmed share under which a wider search is tried; larger searches more often
+    poor: float = 0.4  # matched share under which, after that search, a scan is left to odometry; larger refuses more
     window_metres: float = 0.4  # of the wider search; larger finds worse guesses and mistakes more
     window_radians: float = 0.25
     least_faces: int = 8  # surface points a scan needs to be registered at all
@@ -69,7 +69,8 @@ def track(percept: Percept, last: Floats, move: Move, recent: list[Faces], setti
     prior = Guess(guess, np.asarray(np.linalg.inv(doubt), np.float64))
     found = register(percept.surface, local_map, prior, settings.registration)
     seen = look(percept.fused, found.pose_in_fixed, faces, settings.visibility)
-    if min(found.matched, seen.confirmed) < settings.good:
+    # New ground matches nothing, which is no fault; walls of the map that should be seen and are not are one.
+    if seen.confirmed < settings.good or found.matched < settings.poor:
         found, seen = _wider(percept, local_map, prior, (found, seen), settings)
     if found.matched < settings.poor:
         reason = (
