@@ -24,18 +24,21 @@ DEPTH = 14  # halvings after which a motion that is neither free nor colliding i
 
 class Course(NamedTuple):
     """A robot among walls: its corners (v, 2) with part k in rows first[k] to first[k + 1], the radius it is rounded
-    by, the walls' ends (m, 4)."""
+    by, the walls' ends (m, 4) and boxes (m, 4): least and greatest x, least and greatest y."""
 
     corners: Floats
     first: NDArray[np.int64]
     radius: float
     ends: Floats
+    boxes: Floats
 
 
 def course_of(world: World, robot: Robot) -> Course:
     """The arrays of `robot` in `world`."""
     outline: Outline = outline_of(robot)
-    return Course(outline.corners, outline.first, outline.radius, world.edges.reshape(-1, 4).copy())
+    lows, highs = world.edges.min(axis=1), world.edges.max(axis=1)
+    boxes = np.stack([lows[:, 0], highs[:, 0], lows[:, 1], highs[:, 1]], axis=1)
+    return Course(outline.corners, outline.first, outline.radius, world.edges.reshape(-1, 4).copy(), boxes)
 
 
 @compiled
@@ -104,12 +107,12 @@ def bound(course: Course, motion: Floats, ceiling: float) -> float:
             low_x, high_x = min(low_x, hull[k, 0]), max(high_x, hull[k, 0])
             low_y, high_y = min(low_y, hull[k, 1]), max(high_y, hull[k, 1])
         for k in range(course.ends.shape[0]):
-            wall, near = course.ends[k], least + loss
-            if min(wall[0], wall[2]) > high_x + near or max(wall[0], wall[2]) < low_x - near:
+            near = least + loss
+            if course.boxes[k, 0] > high_x + near or course.boxes[k, 1] < low_x - near:
                 continue
-            if min(wall[1], wall[3]) > high_y + near or max(wall[1], wall[3]) < low_y - near:
+            if course.boxes[k, 2] > high_y + near or course.boxes[k, 3] < low_y - near:
                 continue
-            least = min(least, _hull_to_wall(hull, wall) - loss)
+            least = min(least, _hull_to_wall(hull, course.ends[k]) - loss)
     return least
 
 
@@ -139,9 +142,21 @@ def keeps(course: Course, motion: Floats, clearance: float) -> bool:
 
 
 @compiled
+def _ceiling(course: Course, pose: Floats) -> float:
+    """An upper bound of the clearance at a pose (3,): what the first corner keeps from the nearest wall."""
+    piece, least = np.empty(4), np.inf
+    cosine, sine = np.cos(pose[2]), np.sin(pose[2])
+    piece[0] = piece[2] = pose[0] + cosine * course.corners[0, 0] - sine * course.corners[0, 1]
+    piece[1] = piece[3] = pose[1] + sine * course.corners[0, 0] + cosine * course.corners[0, 1]
+    for k in range(course.ends.shape[0]):
+        least = min(least, nearest(piece, course.ends[k])[2])
+    return least - course.radius
+
+
+@compiled
 def clearance_of(course: Course, poses: Floats, precision: float) -> float:
     """Lower bound of the clearance along poses (p, 3), within about `precision` metres; at least one pose."""
-    least, reach, piece = np.inf, 0.0, np.empty((2, 3))
+    least, reach, piece = _ceiling(course, poses[0]), 0.0, np.empty((2, 3))
     for k in range(course.corners.shape[0]):
         reach = max(reach, np.hypot(course.corners[k, 0], course.corners[k, 1]))
     for leg in range(max(poses.shape[0] - 1, 1)):

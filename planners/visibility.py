@@ -26,11 +26,13 @@ QUARTER = 16  # chords in a quarter circle: the hull stands off by 0.3 % of the 
 
 
 class Roadmap(NamedTuple):
-    """Corners (n, 6): x, y and the two neighbours on the hull; first (n + 1,), targets (e,) of the joined ones."""
+    """Corners (n, 6): x, y and the two neighbours on the hull; first (n + 1,), targets (e,) of the joined ones and
+    how far they are, lengths (e,)."""
 
     corners: Floats
     first: Ints
     targets: Ints
+    lengths: Floats
     raster: Raster
     radius: float
 
@@ -44,7 +46,8 @@ def roadmap_of(world: World, radius: float) -> Roadmap:
     both = np.concatenate([pairs, pairs[:, ::-1]])
     both = both[np.lexsort((both[:, 1], both[:, 0]))]
     first = np.searchsorted(both[:, 0], np.arange(len(corners) + 1)).astype(np.int32)
-    return Roadmap(corners, first, np.ascontiguousarray(both[:, 1]), raster, radius)
+    lengths = np.linalg.norm(corners[both[:, 0], :2] - corners[both[:, 1], :2], axis=1)
+    return Roadmap(corners, first, np.ascontiguousarray(both[:, 1]), lengths, raster, radius)
 
 
 def eroded(free: Polygon | MultiPolygon, distance: float) -> list[Polygon]:
@@ -76,22 +79,40 @@ def _touches(corner: Floats, x: float, y: float) -> bool:
 
 
 @compiled
+def _strays(frame: Floats, wall: Floats, radius: float) -> bool:
+    """Whether a wall (4,) lies wholly to one side of a piece, or before or behind it, by more than `radius`.
+
+    frame: (5,) start of the piece, its unit direction and its length.
+    """
+    x0, y0, x1, y1 = wall[0] - frame[0], wall[1] - frame[1], wall[2] - frame[0], wall[3] - frame[1]
+    one, two = frame[2] * y0 - frame[3] * x0, frame[2] * y1 - frame[3] * x1
+    if min(one, two) > radius or max(one, two) < -radius:
+        return True
+    one, two = frame[2] * x0 + frame[3] * y0, frame[2] * x1 + frame[3] * y1
+    return bool(max(one, two) < -radius or min(one, two) > frame[4] + radius)
+
+
+@compiled
 def sees(raster: Raster, radius: float, piece: Floats) -> bool:
     """Whether a piece (4,) keeps more than `radius` from all walls; the raster's cells on its way list those near."""
     columns, rows = raster.first.shape[0], raster.first.shape[1]
-    steps = max(abs(piece[2] - piece[0]), abs(piece[3] - piece[1])) / raster.cell
-    total, last_column, last_row = int(steps * 2) + 1, -1, -1
+    frame = np.empty(5)
+    frame[0], frame[1], frame[2], frame[3] = piece[0], piece[1], piece[2] - piece[0], piece[3] - piece[1]
+    total = int(2 * max(abs(frame[2]), abs(frame[3])) / raster.cell) + 1
+    step_x, step_y = frame[2] / (total * raster.cell), frame[3] / (total * raster.cell)
+    frame[4] = np.sqrt(frame[2] * frame[2] + frame[3] * frame[3])
+    frame[2], frame[3] = frame[2] / max(frame[4], 1e-300), frame[3] / max(frame[4], 1e-300)
+    begin_x, begin_y = (piece[0] - raster.left) / raster.cell, (piece[1] - raster.bottom) / raster.cell
+    last = -1
     for step in range(total + 1):
-        share = step / total
-        x, y = piece[0] + share * (piece[2] - piece[0]), piece[1] + share * (piece[3] - piece[1])
-        column = min(max(int((x - raster.left) / raster.cell), 0), columns - 1)
-        row = min(max(int((y - raster.bottom) / raster.cell), 0), rows - 1)
-        if column == last_column and row == last_row:
+        column = min(max(int(begin_x + step * step_x), 0), columns - 1)
+        row = min(max(int(begin_y + step * step_y), 0), rows - 1)
+        if column * rows + row == last:
             continue
-        last_column, last_row = column, row
-        begin = raster.first[column, row]
-        for k in range(begin, begin + raster.counts[column, row]):
-            if nearest(piece, raster.ends[raster.members[k]])[2] <= radius:
+        last = column * rows + row
+        for k in range(raster.first[column, row], raster.first[column, row] + raster.counts[column, row]):
+            wall = raster.ends[raster.members[k]]
+            if not _strays(frame, wall, radius) and nearest(piece, wall)[2] <= radius:
                 return False
     return True
 
@@ -114,62 +135,95 @@ def _tangents(corners: Floats, raster: Raster, radius: float) -> Ints:
 
 
 @compiled
-def _depart(roadmap: Roadmap, start: Floats, goal: Floats, queue: Queue, cost: Floats) -> None:
+def _distance(x: float, y: float, point: Floats) -> float:
+    return float(np.sqrt((x - point[0]) ** 2 + (y - point[1]) ** 2))
+
+
+@compiled
+def _depart(roadmap: Roadmap, ends: Floats, queue: Queue, cost: Floats) -> None:
     """Queue every corner that the start may see, as state n + i: it is looked at when its turn comes."""
-    total = roadmap.corners.shape[0]
+    total, start, goal = roadmap.corners.shape[0], ends[0], ends[1]
     for i in range(total):
         x, y = roadmap.corners[i, 0], roadmap.corners[i, 1]
         if _touches(roadmap.corners[i], start[0], start[1]):
-            cost[total + i] = np.hypot(x - start[0], y - start[1])
-            push(queue, total + i, cost[total + i] + np.hypot(x - goal[0], y - goal[1]))
+            cost[total + i] = _distance(x, y, start)
+            push(queue, total + i, cost[total + i] + _distance(x, y, goal))
 
 
 @compiled
-def _spread(roadmap: Roadmap, i: int, goal: Floats, queue: Queue, cost: Floats, parent: Ints) -> None:
-    """Queue the corners joined to corner i, and the way from it to the goal as state 2n + i."""
-    x, y = roadmap.corners[i, 0], roadmap.corners[i, 1]
-    if _touches(roadmap.corners[i], goal[0], goal[1]):
-        push(queue, 2 * roadmap.corners.shape[0] + i, cost[i] + np.hypot(x - goal[0], y - goal[1]))
+def _wraps(corner: Floats, before: Floats, x: float, y: float) -> bool:
+    """Whether a way from `before` bends at a corner towards the hull on its way to x, y, as a taut string does."""
+    dx, dy = corner[0] - before[0], corner[1] - before[1]
+    hull = dx * (corner[3] + corner[5] - 2 * corner[1]) - dy * (corner[2] + corner[4] - 2 * corner[0])
+    bend = dx * (y - corner[1]) - dy * (x - corner[0])
+    slack = 1e-9 * (abs(dx) + abs(dy)) * (abs(x - corner[0]) + abs(y - corner[1]))
+    return bool(bend >= -slack if hull >= 0 else bend <= slack)
+
+
+@compiled
+def _leave(roadmap: Roadmap, i: int, ends: Floats, queue: Queue, cost: Floats, parent: Ints) -> None:
+    """Queue the way from corner i to the goal, state 2n + i, if it is taut. ends: (2, 2) start and goal."""
+    corner, goal = roadmap.corners[i], ends[1]
+    before = roadmap.corners[parent[i]] if parent[i] >= 0 else ends[0]
+    if _touches(corner, goal[0], goal[1]) and _wraps(corner, before, goal[0], goal[1]):
+        push(queue, 2 * roadmap.corners.shape[0] + i, cost[i] + _distance(corner[0], corner[1], goal))
+
+
+@compiled
+def _spread(roadmap: Roadmap, i: int, ends: Floats, queue: Queue, cost: Floats, parent: Ints) -> None:
+    """Queue the corners joined to corner i: only taut ways are followed, for no other begins a shortest one.
+
+    A corner with two neighbours only is passed at once, unless the goal may be seen from it.
+    """
+    corner, goal = roadmap.corners[i], ends[1]
+    before = roadmap.corners[parent[i]] if parent[i] >= 0 else ends[0]
     for k in range(roadmap.first[i], roadmap.first[i + 1]):
-        j = roadmap.targets[k]
-        u, v = roadmap.corners[j, 0], roadmap.corners[j, 1]
-        reached = cost[i] + np.hypot(u - x, v - y)
-        if reached < cost[j]:
-            cost[j], parent[j] = reached, i
-            push(queue, j, reached + np.hypot(u - goal[0], v - goal[1]))
+        last, j, reached = i, roadmap.targets[k], cost[i] + roadmap.lengths[k]
+        if not _wraps(corner, before, roadmap.corners[j, 0], roadmap.corners[j, 1]):
+            continue
+        while reached < cost[j]:
+            cost[j], parent[j] = reached, last
+            begin = roadmap.first[j]
+            if roadmap.first[j + 1] - begin != 2 or _touches(roadmap.corners[j], goal[0], goal[1]):
+                push(queue, j, reached + _distance(roadmap.corners[j, 0], roadmap.corners[j, 1], goal))
+                break
+            onward = begin if roadmap.targets[begin] != last else begin + 1
+            last, j, reached = j, roadmap.targets[onward], reached + roadmap.lengths[onward]
 
 
 @compiled
-def _shortest(roadmap: Roadmap, start: Floats, goal: Floats, queue: Queue) -> tuple[Ints, int]:
-    """Parents of all corners, and the corner from which the goal is reached (−2: straight, −1: not at all)."""
+def _shortest(roadmap: Roadmap, ends: Floats, queue: Queue) -> tuple[Ints, int]:
+    """Parents of all corners, and the corner from which the goal is reached (−2: straight, −1: not at all).
+
+    ends: (2, 2) start and goal.
+    """
     total = roadmap.corners.shape[0]
-    cost, parent, piece = np.full(2 * total, np.inf), np.full(total, -1, np.int32), np.empty(4)
-    for axis in range(2):
-        piece[axis], piece[2 + axis] = start[axis], goal[axis]
+    cost, parent, piece = np.full(2 * total, np.inf), np.full(total, -1, np.int32), ends.copy().reshape(4)
     if sees(roadmap.raster, roadmap.radius, piece):
         return parent, -2
-    _depart(roadmap, start, goal, queue, cost)
+    _depart(roadmap, ends, queue, cost)
     while queue.size[0] > 0:
         state = pop(queue)
         i = state % total
         x, y = roadmap.corners[i, 0], roadmap.corners[i, 1]
         if state < total:
-            _spread(roadmap, i, goal, queue, cost, parent)
+            _leave(roadmap, i, ends, queue, cost, parent)
+            _spread(roadmap, i, ends, queue, cost, parent)
             continue
-        end = start if state < 2 * total else goal
+        end = ends[state // total - 1]
         piece[0], piece[1], piece[2], piece[3] = x, y, end[0], end[1]
         if sees(roadmap.raster, roadmap.radius, piece):
             if state >= 2 * total:
                 return parent, i
             if cost[state] < cost[i]:
                 cost[i], parent[i] = cost[state], -1
-                push(queue, i, cost[i] + np.hypot(x - goal[0], y - goal[1]))
+                push(queue, i, cost[i] + _distance(x, y, ends[1]))
     return parent, -1
 
 
 def shortest(roadmap: Roadmap, start: Floats, goal: Floats) -> Floats | None:
     """The shortest way (k, 2) between two points through the roadmap, or None."""
-    parent, corner = _shortest(roadmap, start, goal, queue_for(3 * len(roadmap.corners)))
+    parent, corner = _shortest(roadmap, np.stack([start, goal]), queue_for(3 * len(roadmap.corners)))
     if corner == -1:
         return None
     points = [goal]
