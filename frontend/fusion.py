@@ -14,6 +14,7 @@ from frontend.opening import smeared, undo_beam
 from frontend.redrawing import gap_core, opening_arc, why_closed
 from frontend.rigid_motion import transform
 from frontend.scan import Booleans, Floats, Integers, Scan
+from frontend.wall_lines import Profile
 
 
 class ReadingKind(IntEnum):
@@ -89,9 +90,9 @@ def fuse(scan: Scan, settings: FusionSettings) -> FusedScan:
     edges = infrared_edges(scan)
     pairs, lone = pair_edges(edges, scan)
     reasons |= {edge.jamb: f"a lone infrared edge at {np.degrees(edge.bearing):.1f}° opens nothing" for edge in lone}
-    openings = []
+    openings, profile = [], Profile(scan.bearings, ranges, kinds == ReadingKind.MEASURED)
     for opening in pairs:
-        reason = why_closed(opening, ranges, scan, settings.door_depth)
+        reason = why_closed(opening, profile, scan, settings.door_depth)
         if reason is None:
             openings.append(opening)
             ranges, kinds = _redrawn(opening, ranges, kinds, scan)

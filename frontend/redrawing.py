@@ -4,12 +4,13 @@ import numpy as np
 
 from frontend.infrared_edges import InfraredEdge, Opening
 from frontend.scan import Booleans, Floats, Scan
+from frontend.wall_lines import Profile, wall_beside
 
 # Of the stated half-beam: the beam of a surface 12 dB brighter than the faintest that is reckoned with.
 BRIGHT_SHARE = 2.0
 
 
-def why_closed(opening: Opening, ranges: Floats, scan: Scan, door_depth: float) -> str | None:
+def why_closed(opening: Opening, profile: Profile, scan: Scan, door_depth: float) -> str | None:
     """Why the infrared's silence between two edges is no opening, or None when it is one."""
     horizon = scan.sensor.infrared_range
     assert horizon is not None
@@ -20,35 +21,32 @@ def why_closed(opening: Opening, ranges: Floats, scan: Scan, door_depth: float) 
         return (
             f"the sonar sees a surface {np.min(scan.ranges[looked]):.2f} m away inside the {np.degrees(width):.0f}° gap"
         )
-    for edge in (opening.right, opening.left):
-        wall = max(float(ranges[edge.jamb]), _wall_range(edge, ranges, scan))
+    ends = [_wall_end(edge, profile, scan) for edge in (opening.right, opening.left)]
+    for wall in ends:
         # A wall that would lie well beyond the horizon is not the one the infrared felt at the edge.
         if abs(horizon - wall) < door_depth:
             return f"the wall is {wall:.2f} m away at the edge, where the infrared fades out by itself"
+    if min(ends) > horizon:
+        return f"no wall ends beside it: they run on to {min(ends):.2f} m, beyond the infrared's range"
     return None
 
 
-def _wall_range(edge: InfraredEdge, ranges: Floats, scan: Scan) -> float:
-    """How far the wall beside an edge would be at the edge, 0 where no straight wall leads there.
+def _wall_end(edge: InfraredEdge, profile: Profile, scan: Scan) -> float:
+    """How far away the wall beside an edge is at the edge, metres.
 
     In a corner the beam reads short, so where the infrared fades out there it seems to do so before its range: the
-    wall is taken from one to two half-beams aside, where it is read as it is.
+    wall is continued from where it is read as it is. Where that lies farther than a square corner can shorten it to
+    the reading, it is another wall, and the reading stands.
     """
-    half_beam = scan.sensor.half_beam_at(float(ranges[edge.jamb]))
-    step = float(np.median(np.diff(scan.bearings)))
-    aside = np.arange(int(np.ceil(2 * half_beam / step)) + 1)
-    places = edge.jamb + (-aside if edge.opens else aside)
-    if not scan.full_turn and not (places.min() >= 0 and places.max() < ranges.size):
-        return 0.0
-    reach = ranges[places % ranges.size]
-    bearings = scan.bearings[places % ranges.size] - edge.bearing
-    straight = slice(int(np.ceil(half_beam / step)), None)
-    # A line's inverse range is linear in the cosine and sine of the bearing.
-    rays = np.column_stack([np.cos(bearings), np.sin(bearings)])[straight]
-    line, *_ = np.linalg.lstsq(rays, 1 / reach[straight], rcond=None)
-    misses = np.abs(reach[straight] - 1 / np.maximum(rays @ line, 1e-6))
-    is_wall = np.max(misses, initial=0.0) < 4 * scan.sensor.range_noise + scan.sensor.quantum
-    return float(1 / line[0]) if is_wall and line[0] > 0 else 0.0
+    noise = float(np.hypot(scan.sensor.range_noise, scan.sensor.quantum))
+    reading = float(profile.ranges[edge.jamb])
+    wall = wall_beside(profile, edge.jamb, -1 if edge.opens else 1, noise)
+    if wall is None:
+        return reading
+    continued = float(wall.ranges(np.array([edge.bearing]))[0][0])
+    beam = BRIGHT_SHARE * scan.sensor.half_beam_at(reading)
+    shortest = continued * np.sin(np.pi / 4) / np.sin(np.pi / 4 + min(beam, np.pi / 4))
+    return continued if reading > shortest - 4 * noise else reading
 
 
 def _gap(opening: Opening) -> float:
