@@ -4,12 +4,12 @@ Doubt grows along the graph: each motion adds its variance, and the doubt of its
 The way of least doubt from the newest pose to an old one (Dijkstra) says how far off the two may be.
 """
 
+import heapq
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import dijkstra
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -41,27 +41,32 @@ class Drift:
     """The doubt between poses of the graph, as motions and loops are added."""
 
     def __init__(self) -> None:
-        self._ends = np.empty((0, 2), np.int64)
-        self._variances = np.empty((0, 2))
+        self._rows: dict[tuple[int, int], int] = {}
+        self._ends = np.empty((64, 2), np.int64)  # room for more than there are, so that adding copies nothing
+        self._variances = np.empty((64, 2))
 
     def add(self, fixed: int, moving: int, covariance: Floats) -> None:
         """Two poses are tied with this covariance (3, 3)."""
-        variances = np.array([np.trace(covariance[:2, :2]), covariance[2, 2]])
-        tied = np.flatnonzero((self._ends == (fixed, moving)).all(axis=1))
-        if len(tied):
-            self._variances[tied[0]] = np.minimum(self._variances[tied[0]], variances)
+        variances = np.array([covariance[0, 0] + covariance[1, 1], covariance[2, 2]])
+        if (row := self._rows.get((fixed, moving))) is not None:
+            self._variances[row] = np.minimum(self._variances[row], variances)
             return
-        self._ends = np.vstack([self._ends, (fixed, moving)])
-        self._variances = np.vstack([self._variances, variances])
+        row = self._rows[fixed, moving] = len(self._rows)
+        if row == len(self._ends):
+            self._ends = np.concatenate([self._ends, np.empty_like(self._ends)])
+            self._variances = np.concatenate([self._variances, np.empty_like(self._variances)])
+        self._ends[row], self._variances[row] = (fixed, moving), variances
 
     def place_from(self, newest: int, positions: Floats) -> Floats:
         """Standard deviations (n,) in metres of the place of every pose against the newest."""
-        lever = np.sum((positions[self._ends[:, 1]] - positions[newest]) ** 2, axis=1)
-        return _least_doubt(self._ends, self._variances[:, 0] + self._variances[:, 1] * lever, newest, len(positions))
+        ends, variances = self._ends[: len(self._rows)], self._variances[: len(self._rows)]
+        lever = np.sum((positions[ends[:, 1]] - positions[newest]) ** 2, axis=1)
+        return np.asarray(np.sqrt(least_sums(ends, variances[:, 0] + variances[:, 1] * lever, newest, len(positions))))
 
     def heading_from(self, newest: int, count: int) -> Floats:
         """Standard deviations (n,) in radians of the heading of every pose against the newest."""
-        return _least_doubt(self._ends, self._variances[:, 1], newest, count)
+        ends, variances = self._ends[: len(self._rows)], self._variances[: len(self._rows)]
+        return np.asarray(np.sqrt(least_sums(ends, variances[:, 1].copy(), newest, count)))
 
 
 def candidates(poses: Floats, drift: Drift, settings: LoopSettings) -> list[Candidate]:
@@ -86,8 +91,30 @@ def candidates(poses: Floats, drift: Drift, settings: LoopSettings) -> list[Cand
     return [Candidate(pose, float(doubts[pose]), float(min(settings.sigmas * heading[pose], 0.6))) for pose in chosen]
 
 
-def _least_doubt(ends: Integers, variances: Floats, newest: int, count: int) -> Floats:
-    """Standard deviation (n,) along the way of least variance from the newest pose."""
-    graph = csr_matrix((variances, (ends[:, 0], ends[:, 1])), shape=(count, count))
-    ways = dijkstra(graph, directed=False, indices=np.array([newest]))
-    return np.asarray(np.sqrt(ways[0]), np.float64)
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def least_sums(ends: Integers, costs: Floats, start: int, count: int) -> Floats:
+    """The least sum (count,) of costs (m,) along ties (m, 2), walked either way, from the start; Dijkstra 1959."""
+    first = np.zeros(count + 2, np.int64)
+    for k in range(len(ends)):
+        first[ends[k, 0] + 2] += 1
+        first[ends[k, 1] + 2] += 1
+    first = np.cumsum(first)
+    beyond, cost = np.empty(2 * len(ends), np.int64), np.empty(2 * len(ends))
+    for k in range(len(ends)):
+        for side in range(2):
+            slot = first[ends[k, side] + 1]
+            beyond[slot], cost[slot] = ends[k, 1 - side], costs[k]
+            first[ends[k, side] + 1] += 1
+    sums = np.full(count, np.inf)
+    sums[start] = 0.0
+    queue = [(0.0, start)]
+    while queue:
+        total, here = heapq.heappop(queue)
+        if total > sums[here]:
+            continue
+        for slot in range(first[here], first[here + 1]):
+            there, farther = beyond[slot], total + cost[slot]
+            if farther < sums[there]:
+                sums[there] = farther
+                heapq.heappush(queue, (farther, there))
+    return sums

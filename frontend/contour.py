@@ -3,7 +3,7 @@
 Every point keeps where it came from, and every edge says whether it is surface or only a line of sight.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
 import numpy as np
@@ -61,7 +61,7 @@ class Contour:
 
     points: (m, 2). kinds: (m,) ContourKind. edge_kinds: (m,) EdgeKind of the edge from point i to i + 1, cyclic.
     reading: (m,) index into the scan; fillers and the sensor's origin carry the reading before them.
-    arc_length: (m,) metres from the first point. normals: (m, 2) facing the sensor on measured surface, else nan.
+    normals: (m, 2) facing the sensor on measured surface, else nan.
     spread: (m,) standard deviation along the beam; thickness: (m,) of the surface around it, else nan; metres.
     vertices: (v,) the points that are no filler: the same boundary with fewer points.
     """
@@ -70,12 +70,16 @@ class Contour:
     kinds: NDArray[np.uint8]
     edge_kinds: NDArray[np.uint8]
     reading: Integers
-    arc_length: Floats
     normals: Floats
     spread: Floats
     thickness: Floats
     origin: Floats
     surface_thickness: float
+
+    @property
+    def arc_length(self) -> Floats:
+        """(m,) metres from the first point."""
+        return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.points, axis=0), axis=1))])
 
     @property
     def vertices(self) -> Integers:
@@ -105,40 +109,56 @@ class Contour:
 
 
 def trace(fused: FusedScan, settings: ContourSettings) -> Contour:
-    """Join the readings in order, fill the gaps, and say of every edge what it is."""
+    """Join the readings in order, say of every edge what it is, and fill the gaps."""
+    return filled(outline(fused, settings), settings.filler_spacing)
+
+
+def outline(fused: FusedScan, settings: ContourSettings) -> Contour:
+    """The contour without its filler points."""
     ends = fused.ranges[:, None] * np.column_stack([np.cos(fused.bearings), np.sin(fused.bearings)])
-    joints = _edges_between(fused, ends, settings)
+    edges = _edges_between(fused, ends, settings)
     reaches = fit_reaches(
         fused.bearings, fused.ranges, fused.spread,
         settings.surface_sureness, settings.surface_reach, settings.surface_widest,
     )  # fmt: skip
-    normals, thickness = line_fits(ends, joints == EdgeKind.REAL, reaches, np.zeros(2))
-    corners, kinds, edges, readings = ends, _point_kinds(fused.kinds), joints, np.arange(ends.shape[0])
+    normals, thickness = line_fits(ends, edges == EdgeKind.REAL, reaches, np.zeros(2))
+    kinds, readings = _point_kinds(fused.kinds), np.arange(ends.shape[0])
     spread = np.hypot(fused.spread, fused.doubt)
     if not fused.scan.full_turn:  # the view ends at the sensor, on both sides
-        corners, kinds = np.vstack([ends, np.zeros(2)]), np.append(kinds, np.uint8(ContourKind.SIDE))
-        edges, readings = np.append(joints, np.uint8(EdgeKind.SIDE)), np.append(readings, readings[-1])
-        spread = np.append(spread, 0.0)
-    fillers = _filler_counts(corners, edges, settings.filler_spacing)
-    owner = np.repeat(np.arange(corners.shape[0]), fillers + 1)
-    step = np.arange(owner.size) - np.repeat(np.cumsum(fillers + 1) - fillers - 1, fillers + 1)
-    following = np.roll(corners, -1, axis=0)[owner]
-    share = (step / (fillers[owner] + 1))[:, None]
-    points = (1 - share) * corners[owner] + share * following
+        ends, kinds = np.vstack([ends, np.zeros(2)]), np.append(kinds, np.uint8(ContourKind.SIDE))
+        edges, readings = np.append(edges, np.uint8(EdgeKind.SIDE)), np.append(readings, readings[-1])
+        spread, thickness = np.append(spread, 0.0), np.append(thickness, np.nan)
+        normals = np.vstack([normals, np.full(2, np.nan)])
     mount = np.array(fused.scan.sensor.mount)
-    placed = transform(points, mount)
-    on_reading = (step == 0) & (owner < ends.shape[0])
     return Contour(
-        points=placed,
-        kinds=np.where(step == 0, kinds[owner], ContourKind.FILLER).astype(np.uint8),
-        edge_kinds=edges[owner],
-        reading=readings[owner],
-        arc_length=np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(placed, axis=0), axis=1))]),
-        normals=_at(transform(normals, np.array([0.0, 0.0, mount[2]])), owner, on_reading),
-        spread=spread[owner],
-        thickness=_at(thickness, owner, on_reading),
+        points=transform(ends, mount),
+        kinds=kinds,
+        edge_kinds=edges,
+        reading=readings,
+        normals=transform(normals, np.array([0.0, 0.0, mount[2]])),
+        spread=spread,
+        thickness=thickness,
         origin=mount[:2],
         surface_thickness=max(settings.surface_thickness, 2 * fused.scan.sensor.range_noise),
+    )
+
+
+def filled(outline: Contour, spacing: float) -> Contour:
+    """The same boundary with filler points at most `spacing` metres apart."""
+    fillers = _filler_counts(outline.points, outline.edge_kinds, spacing)
+    owner = np.repeat(np.arange(outline.points.shape[0]), fillers + 1)
+    step = np.arange(owner.size) - np.repeat(np.cumsum(fillers + 1) - fillers - 1, fillers + 1)
+    share = (step / (fillers[owner] + 1))[:, None]
+    following = np.roll(outline.points, -1, axis=0)[owner]
+    return replace(
+        outline,
+        points=(1 - share) * outline.points[owner] + share * following,
+        kinds=np.where(step == 0, outline.kinds[owner], ContourKind.FILLER).astype(np.uint8),
+        edge_kinds=outline.edge_kinds[owner],
+        reading=outline.reading[owner],
+        normals=np.where((step == 0)[:, None], outline.normals[owner], np.nan),
+        spread=outline.spread[owner],
+        thickness=np.where(step == 0, outline.thickness[owner], np.nan),
     )
 
 
@@ -147,13 +167,6 @@ def _point_kinds(kinds: NDArray[np.uint8]) -> NDArray[np.uint8]:
     for kind in ReadingKind:
         names[kind] = ContourKind[kind.name]
     return names[kinds]
-
-
-def _at(values: Floats, owner: Integers, chosen: Booleans) -> Floats:
-    """Values (m, …) of the readings where chosen (m,), nan elsewhere."""
-    spread_out = np.full((owner.size, *values.shape[1:]), np.nan)
-    spread_out[chosen] = values[owner[chosen]]
-    return spread_out
 
 
 def _filler_counts(corners: Floats, edges: NDArray[np.uint8], spacing: float) -> Integers:

@@ -66,19 +66,30 @@ class PrimalSketch:
     origin: Floats
 
 
+@dataclass(frozen=True, eq=False)
+class KnotColumns:
+    """Columns of knots, as in the primal sketch, while they are gathered."""
+
+    kinds: NDArray[np.uint8]
+    positions: Floats
+    turns: Floats
+    headings: Floats
+    walls: Floats
+    scales: Floats
+    covariances: Floats
+    readings: Floats
+
+
 def sketch(contour: Contour, settings: SketchSettings) -> PrimalSketch:
     """Knots and lines of a contour."""
     vertices = contour.vertices
     points, edges = contour.points[vertices], contour.edge_kinds[vertices]
     noise = contour.spread[vertices]
-    long_enough = 2 * settings.landmarks.least_points
-    found = [_corners(points, noise, chain, settings) for chain in chains(edges) if chain.size >= long_enough]
-    found.append(_jambs(contour, points, noise, edges, settings))
-    landmarks = _joined(found)
+    landmarks = landmark_knots(contour, settings)
     geometry = _geometry(contour, points, edges, landmarks, settings)
     knots = _joined([landmarks, geometry])
     order = np.argsort(knots.readings, kind="stable")
-    knots = _Knots(*(getattr(knots, name)[order] for name in _Knots.__dataclass_fields__))
+    knots = KnotColumns(*(getattr(knots, name)[order] for name in KnotColumns.__dataclass_fields__))
     return PrimalSketch(
         kinds=knots.kinds,
         positions=knots.positions,
@@ -93,6 +104,15 @@ def sketch(contour: Contour, settings: SketchSettings) -> PrimalSketch:
         lines=wall_lines(points, knots.readings, _real_edges(knots.readings, edges), noise),
         origin=contour.origin,
     )
+
+
+def landmark_knots(contour: Contour, settings: SketchSettings) -> KnotColumns:
+    """The knots of a contour that may be matched, and its smooth joins; without what only bounds the polyline."""
+    vertices = contour.vertices
+    points, edges, noise = contour.points[vertices], contour.edge_kinds[vertices], contour.spread[vertices]
+    long_enough = 2 * settings.landmarks.least_points
+    found = [_corners(points, noise, chain, settings) for chain in chains(edges) if chain.size >= long_enough]
+    return _joined([*found, _jambs(contour, points, noise, edges, settings)])
 
 
 def chains(edges: NDArray[np.uint8]) -> list[Integers]:
@@ -111,28 +131,16 @@ def chains(edges: NDArray[np.uint8]) -> list[Integers]:
     ]
 
 
-@dataclass(frozen=True, eq=False)
-class _Knots:
-    """Columns of knots while they are gathered."""
-
-    kinds: NDArray[np.uint8]
-    positions: Floats
-    turns: Floats
-    headings: Floats
-    walls: Floats
-    scales: Floats
-    covariances: Floats
-    readings: Floats
+def _joined(parts: list[KnotColumns]) -> KnotColumns:
+    return KnotColumns(
+        *(np.concatenate([getattr(part, name) for part in parts]) for name in KnotColumns.__dataclass_fields__)
+    )
 
 
-def _joined(parts: list[_Knots]) -> _Knots:
-    return _Knots(*(np.concatenate([getattr(part, name) for part in parts]) for name in _Knots.__dataclass_fields__))
-
-
-def _corners(points: Floats, noise: Floats, chain: Integers, settings: SketchSettings) -> _Knots:
+def _corners(points: Floats, noise: Floats, chain: Integers, settings: SketchSettings) -> KnotColumns:
     knots = chain_knots(points[chain], float(np.mean(noise[chain])), settings.landmarks)
     before = knots.headings - 0.5 * np.pi - 0.5 * knots.turns
-    return _Knots(
+    return KnotColumns(
         kinds=knots.kinds,
         positions=knots.positions,
         turns=knots.turns,
@@ -146,9 +154,9 @@ def _corners(points: Floats, noise: Floats, chain: Integers, settings: SketchSet
 
 def _jambs(
     contour: Contour, points: Floats, noise: Floats, edges: NDArray[np.uint8], settings: SketchSettings
-) -> _Knots:
+) -> KnotColumns:
     jambs = find_jambs(points, noise, edges, contour.origin, settings.jambs)
-    return _Knots(
+    return KnotColumns(
         kinds=np.where(jambs.bumps, KnotKind.BUMP, KnotKind.JAMB).astype(np.uint8),
         positions=jambs.positions,
         turns=jambs.turns,
@@ -161,8 +169,8 @@ def _jambs(
 
 
 def _geometry(
-    contour: Contour, points: Floats, edges: NDArray[np.uint8], landmarks: _Knots, settings: SketchSettings
-) -> _Knots:
+    contour: Contour, points: Floats, edges: NDArray[np.uint8], landmarks: KnotColumns, settings: SketchSettings
+) -> KnotColumns:
     """The vertices that keep the polyline within the tolerance of every reading, where no landmark does already."""
     chosen = bounded_vertices(points, edges == EdgeKind.REAL, contour.origin, settings.tolerance)
     if landmarks.readings.size:
@@ -174,7 +182,7 @@ def _geometry(
     heading_in, heading_out = np.arctan2(-before[:, 1], -before[:, 0]), np.arctan2(after[:, 1], after[:, 0])
     turns = np.pi - np.mod(np.pi - (heading_out - heading_in), 2 * np.pi)
     spread = contour.spread[contour.vertices[chosen]]
-    return _Knots(
+    return KnotColumns(
         kinds=np.full(k, KnotKind.GEOMETRY, dtype=np.uint8),
         positions=points[chosen],
         turns=turns,

@@ -1,6 +1,7 @@
 """A scan: what the head saw in one turn, with the facts of the sensor that saw it (Flynn 1988, §3)."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,7 +72,7 @@ class Scan:
         if self.odometry.shape != (3,):
             raise ScanError(f"odometry needs x, y and heading, but has shape {self.odometry.shape}")
 
-    @property
+    @cached_property
     def full_turn(self) -> bool:
         """Whether the scan closes on itself: the gap across the wrap-around is like the step between readings."""
         if self.bearings.size < 3:

@@ -1,14 +1,15 @@
 """Perception: everything the front end makes of one scan, kept together for the stages after it."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from backend.landmark_map import Knots
 from backend.view import View
-from frontend.contour import Contour, ContourSettings, trace
+from frontend.contour import Contour, ContourSettings, filled, outline
 from frontend.fusion import FusedScan, FusionSettings, fuse
-from frontend.primal_sketch import PrimalSketch, SketchSettings, sketch
+from frontend.primal_sketch import KnotKind, PrimalSketch, SketchSettings, landmark_knots, sketch
 from frontend.rigid_motion import transform
 from frontend.scan import Floats, Scan
 from frontend.surface import Surface
@@ -25,12 +26,15 @@ class FrontendSettings:
 
 @dataclass(frozen=True, eq=False)
 class Percept:
-    """One scan, fused, traced and sketched; surface is what registration uses. All in the robot's frame."""
+    """One scan, fused and outlined; surface is what registration uses. All in the robot's frame.
+
+    Poses need no more: what else there is to see is made when somebody looks.
+    """
 
     fused: FusedScan
-    contour: Contour
-    sketch: PrimalSketch
+    outline: Contour
     surface: Surface
+    settings: FrontendSettings
 
     @property
     def scan(self) -> Scan:
@@ -45,25 +49,30 @@ class Percept:
         ends = ranges[:, None] * np.column_stack([np.cos(fused.bearings), np.sin(fused.bearings)])
         return transform(ends, np.array(fused.scan.sensor.mount))
 
+    @cached_property
+    def contour(self) -> Contour:
+        """The outline with its filler points."""
+        return filled(self.outline, self.settings.contour.filler_spacing)
+
+    @cached_property
+    def sketch(self) -> PrimalSketch:
+        """The primal sketch of the contour."""
+        return sketch(self.outline, self.settings.sketch)
+
     @property
     def knots(self) -> Knots:
         """The landmark knots of the sketch whose both sides were seen: a half-seen corner moves with the viewpoint."""
-        kept = self.sketch.landmark & ~np.isnan(self.sketch.walls).any(axis=1)
-        return Knots(
-            self.sketch.positions[kept],
-            self.sketch.turns[kept],
-            self.sketch.headings[kept],
-            self.sketch.covariances[kept],
-        )
+        found = landmark_knots(self.outline, self.settings.sketch)
+        kept = (found.kinds != KnotKind.SMOOTH_JOIN) & ~np.isnan(found.walls).any(axis=1)
+        return Knots(found.positions[kept], found.turns[kept], found.headings[kept], found.covariances[kept])
 
     @property
     def view(self) -> View:
         """What the scan says of the room, for merging."""
-        vertices = self.contour.vertices
         return View(
-            self.contour.points[vertices],
-            self.contour.edge_kinds[vertices],
-            self.contour.spread[vertices],
+            self.outline.points,
+            self.outline.edge_kinds,
+            self.outline.spread,
             self.fused.origin,
             self.fused.jambs,
         )
@@ -72,5 +81,5 @@ class Percept:
 def perceive(scan: Scan, settings: FrontendSettings) -> Percept:
     """Run the front end on one scan."""
     fused = fuse(scan, settings.fusion)
-    contour = trace(fused, settings.contour)
-    return Percept(fused, contour, sketch(contour, settings.sketch), contour.surface())
+    traced = outline(fused, settings.contour)
+    return Percept(fused, traced, traced.surface(), settings)
