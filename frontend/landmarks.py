@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from frontend.compiled import compiled
 from frontend.lines import crossing, fit_line
 from frontend.primitives import Primitive, PrimitiveSettings, classify, smooth_joins
-from frontend.scale_space import ScaleSpace, scale_space, tracks
-from frontend.scan import Floats, Integers
+from frontend.scale_space import ScaleSpace, arc_lengths, chain_turns, follow_extrema, resampled, scale_space
+from frontend.scan import Booleans, Floats, Integers
 
 
 @dataclass(frozen=True)
@@ -29,6 +29,17 @@ class LandmarkSettings:
     least_points: int = 3  # readings a side must have; larger drops far knots
     roughness: float = 4.0  # rms across the fitted lines in units of the noise; larger takes rough or curved walls
     primitives: PrimitiveSettings = field(default_factory=PrimitiveSettings)
+
+    @property
+    def sigmas(self) -> Floats:
+        """(l,) metres, fine to coarse."""
+        return np.asarray(self.finest * np.sqrt(2.0) ** np.arange(self.scales))
+
+    @property
+    def limits(self) -> Floats:
+        """What compiled loops need of these: support, least support and points, roughness, least turn, significance."""
+        return np.array([self.support, self.least_support, self.least_points,
+                         self.roughness, self.least_turn, self.significance])  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,32 +61,91 @@ class ChainKnots:
     places: Integers
 
 
+@dataclass(frozen=True, eq=False)
+class Corners:
+    """The corners of all chains of a contour: columns as in the chain's knots."""
+
+    positions: Floats
+    turns: Floats
+    headings: Floats
+    covariances: Floats
+
+
+def corners(points: Floats, real: Booleans, noise: Floats, settings: LandmarkSettings) -> Corners:
+    """The corners on the surface of a contour (n, 2), free space on its left: what poses need, and nothing else.
+
+    real: (n,) whether the edge from a point to the next, cyclically, is surface. noise: (n,) metres.
+    """
+    rows = corners_of_chains(points, real, noise, settings.sigmas, settings.spacing, settings.limits)
+    return Corners(
+        rows[:, :2], rows[:, 5], np.pi - np.mod(np.pi - rows[:, 6], 2 * np.pi), rows[:, [2, 3, 3, 4]].reshape(-1, 2, 2)
+    )
+
+
 def chain_knots(points: Floats, noise: float, settings: LandmarkSettings) -> ChainKnots:
     """The knots of a chain of points (n, 2), free space on its left: its corners, then its smooth joins."""
-    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    arc = arc_lengths(points)
     if points.shape[0] < 2 * settings.least_points or arc[-1] < 2 * settings.least_support:
-        return _from_rows(np.empty((0, 8)), np.empty((0, 2)), np.empty(0), np.empty(0, dtype=np.int64), settings)
-    sigmas = settings.finest * np.sqrt(2.0) ** np.arange(settings.scales)
+        return _from_rows(np.empty((0, 11)), np.empty(0, dtype=np.int64), settings)
+    sigmas = settings.sigmas
     space = scale_space(points, sigmas, settings.spacing)
-    step = float(arc[-1]) / (arc.size - 1)
-    found = tracks(space, thresholds(sigmas, noise, step, settings))
-    order = np.argsort(found.place)
-    at = space.arc_length[found.place[order]]
-    rows, kept = place_corners(
-        points, arc, at, noise,
-        np.array([settings.support, settings.least_support, settings.least_points,
-                  settings.roughness, settings.least_turn, settings.significance]),
-    )  # fmt: skip
-    lived = np.column_stack([sigmas[found.first], sigmas[found.last]])[order][kept]
-    corners = _from_rows(rows, lived, at[kept], np.searchsorted(arc, at[kept]) - 1, settings)
+    rows, at = corners_of_chain(points, arc, noise, space.turns, sigmas, settings.limits)
+    found = _from_rows(rows, np.searchsorted(arc, rows[:, 10]) - 1, settings)
     joins = smooth_joins(space, at, noise, settings.primitives)
-    return _with_joins(corners, space, joins, np.maximum(np.searchsorted(arc, space.arc_length[joins]) - 1, 0))
+    return _with_joins(found, space, joins, np.maximum(np.searchsorted(arc, space.arc_length[joins]) - 1, 0))
 
 
-def thresholds(sigmas: Floats, noise: float, step: float, settings: LandmarkSettings) -> Floats:
+@compiled
+def corners_of_chains(
+    points: Floats, real: Booleans, noise: Floats, sigmas: Floats, spacing: float, limits: Floats
+) -> Floats:
+    """Rows (t, 11), as of one chain, of all chains of vertices (n, 2) joined by real edges."""
+    n = points.shape[0]
+    first = 0  # a chain that runs over the end of the list is read from its own beginning
+    while first < n and real[first - 1]:
+        first += 1
+    first %= n
+    rows, start = np.empty((0, 11)), 0
+    while start < n:
+        stop = start
+        while stop < start + n - 1 and real[(first + stop) % n]:
+            stop += 1
+        if stop - start + 1 >= 2 * limits[2]:
+            readings = (first + np.arange(start, stop + 1)) % n
+            chain = points[readings]
+            arc = arc_lengths(chain)
+            if arc[-1] >= 2 * limits[1]:
+                even, walked = resampled(chain, arc, spacing)
+                turns = chain_turns(walked, even[1], sigmas)
+                found, _ = corners_of_chain(chain, arc, np.mean(noise[readings]), turns, sigmas, limits)
+                rows = np.concatenate((rows, found))
+        start = stop + 1
+    return rows
+
+
+@compiled
+def corners_of_chain(
+    points: Floats, arc: Floats, noise: float, turns: Floats, sigmas: Floats, limits: Floats
+) -> tuple[Floats, Floats]:
+    """Corners (t, 11) as `place_corners`, then finest and coarsest sigma and place along it; also all places (c,)."""
+    step = arc[-1] / (arc.size - 1)
+    spacing = arc[-1] / (turns.shape[1] - 1)
+    place, first, last = follow_extrema(turns, thresholds(sigmas, noise, step, limits), sigmas / spacing)
+    order = np.argsort(place)
+    at = place[order] * spacing
+    placed, kept = place_corners(points, arc, at, noise, limits)
+    rows = np.empty((len(kept), 11))
+    rows[:, :8], rows[:, 10] = placed, at[kept]
+    for k in range(len(kept)):
+        rows[k, 8], rows[k, 9] = sigmas[first[order[kept[k]]]], sigmas[last[order[kept[k]]]]
+    return rows, at
+
+
+@compiled
+def thresholds(sigmas: Floats, noise: float, step: float, limits: Floats) -> Floats:
     """Least turn (l,) that stands out of the noise at each sigma: k·e·√(2π)·√(3h / 8√π)·σ^(−3/2)."""
     law = np.sqrt(2 * np.pi) * np.sqrt(3 * step / (8 * np.sqrt(np.pi))) * sigmas**-1.5
-    return np.asarray(np.maximum(settings.least_turn, settings.significance * noise * law))
+    return np.asarray(np.maximum(limits[4], limits[5] * noise * law))
 
 
 @compiled
@@ -113,14 +183,14 @@ def place_corners(points: Floats, arc: Floats, at: Floats, noise: float, limits:
     return rows[:found], kept[:found]
 
 
-def _from_rows(rows: Floats, lived: Floats, at: Floats, places: Integers, settings: LandmarkSettings) -> ChainKnots:
+def _from_rows(rows: Floats, places: Integers, settings: LandmarkSettings) -> ChainKnots:
     return ChainKnots(
-        kinds=classify(rows[:, 5], at, settings.primitives),
+        kinds=classify(rows[:, 5], rows[:, 10], settings.primitives),
         positions=rows[:, :2],
         turns=rows[:, 5],
         headings=np.pi - np.mod(np.pi - rows[:, 6], 2 * np.pi),
         covariances=rows[:, [2, 3, 3, 4]].reshape(-1, 2, 2),
-        scales=lived,
+        scales=rows[:, 8:10],
         places=places,
     )
 

@@ -27,12 +27,28 @@ class ScaleSpace:
 
 def scale_space(points: Floats, sigmas: Floats, spacing: float) -> ScaleSpace:
     """The scale space of a chain of points (n, 2), n ≥ 2. sigmas: (l,) metres, fine to coarse."""
-    steps = np.hypot(*np.diff(points, axis=0).T)
-    places = np.concatenate([[0.0], np.cumsum(steps)])
-    count = max(int(np.ceil(places[-1] / spacing - 1e-9)) + 1, 3)
-    even = np.linspace(0.0, places[-1], count)
-    walked = np.column_stack([np.interp(even, places, points[:, 0]), np.interp(even, places, points[:, 1])])
+    even, walked = resampled(points, arc_lengths(points), spacing)
     return ScaleSpace(even, walked, sigmas, chain_turns(walked, even[1], sigmas))
+
+
+@compiled
+def arc_lengths(points: Floats) -> Floats:
+    """Metres (n,) along a chain of points (n, 2) from its first."""
+    lengths = np.zeros(points.shape[0])
+    for i in range(1, points.shape[0]):
+        step = np.hypot(points[i, 0] - points[i - 1, 0], points[i, 1] - points[i - 1, 1])
+        lengths[i] = lengths[i - 1] + step
+    return lengths
+
+
+@compiled
+def resampled(points: Floats, arc: Floats, spacing: float) -> tuple[Floats, Floats]:
+    """Arc lengths (m,) and points (m, 2) of a chain at even steps of at most `spacing`, three points at least."""
+    count = max(int(np.ceil(arc[-1] / spacing - 1e-9)) + 1, 3)
+    even, walked = np.linspace(0.0, arc[-1], count), np.empty((count, 2))
+    walked[:, 0] = np.interp(even, arc, points[:, 0].copy())
+    walked[:, 1] = np.interp(even, arc, points[:, 1].copy())
+    return even, walked
 
 
 @compiled
@@ -51,14 +67,13 @@ def chain_turns(points: Floats, spacing: float, sigmas: Floats) -> Floats:
         extra = np.sqrt(sigma**2 - first**2)
         reach = int(np.ceil(3.5 * extra / spacing))
         offsets = np.arange(-reach, reach + 1) * spacing
-        kernel = np.exp(-0.5 * (offsets / extra) ** 2)
-        slope = offsets * kernel
-        slope /= np.sum(slope * offsets)
+        slope = offsets * np.exp(-0.5 * (offsets / extra) ** 2)
+        slope *= sigma * np.sqrt(2 * np.pi) / np.sum(slope * offsets)
+        padded = np.empty(m + 2 * reach)
+        for i in range(m + 2 * reach):
+            padded[i] = orientation[_reflected(i - reach, m)]
         for i in range(m):
-            total = 0.0
-            for k in range(-reach, reach + 1):
-                total += slope[k + reach] * orientation[_reflected(i + k, m)]
-            turns[level, i] = total * sigma * np.sqrt(2 * np.pi)
+            turns[level, i] = np.dot(slope, padded[i : i + 2 * reach + 1])
     return turns
 
 

@@ -7,9 +7,10 @@ import numpy as np
 
 from backend.landmark_map import Knots
 from backend.view import View
-from frontend.contour import Contour, ContourSettings, filled, outline
+from frontend.contour import Contour, ContourSettings, EdgeKind, filled, outline
 from frontend.fusion import FusedScan, FusionSettings, fuse
-from frontend.primal_sketch import KnotKind, PrimalSketch, SketchSettings, landmark_knots, sketch
+from frontend.landmarks import corners
+from frontend.primal_sketch import PrimalSketch, SketchSettings, sketch
 from frontend.rigid_motion import transform
 from frontend.scan import Floats, Scan
 from frontend.surface import Surface
@@ -61,10 +62,12 @@ class Percept:
 
     @property
     def knots(self) -> Knots:
-        """The landmark knots of the sketch whose both sides were seen: a half-seen corner moves with the viewpoint."""
-        found = landmark_knots(self.outline, self.settings.sketch)
-        kept = (found.kinds != KnotKind.SMOOTH_JOIN) & ~np.isnan(found.walls).any(axis=1)
-        return Knots(found.positions[kept], found.turns[kept], found.headings[kept], found.covariances[kept])
+        """The corners of the sketch, both of whose sides were seen: a half-seen corner moves with the viewpoint."""
+        traced = self.outline
+        found = corners(
+            traced.points, traced.edge_kinds == EdgeKind.REAL, traced.spread, self.settings.sketch.landmarks
+        )
+        return Knots(found.positions, found.turns, found.headings, found.covariances)
 
     @property
     def view(self) -> View:
