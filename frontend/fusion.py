@@ -81,6 +81,7 @@ def fuse(scan: Scan, settings: FusionSettings) -> FusedScan:
         scan.bearings,
         np.where(measured, scan.ranges, np.nan),
         scan.sensor.beam * np.array([1.0, settings.beam_share]),
+        scan.sensor.range_noise,
         scan.full_turn,
     )
     ranges = _filled(opened, kinds, scan, settings)

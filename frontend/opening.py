@@ -7,23 +7,34 @@ range: a reading says that nothing lies nearer than it, at each angle off its ax
 """
 
 import numpy as np
+from scipy.special import ndtri
 
 from frontend.compiled import compiled
 from frontend.scan import Floats, Integers
 
 
-def undo_beam(bearings: Floats, ranges: Floats, beam: Floats, full_turn: bool) -> Floats:
+def undo_beam(bearings: Floats, ranges: Floats, beam: Floats, noise: float, full_turn: bool) -> Floats:
     """The opened profile (n,) of `ranges` (n,) at `bearings` (n,): the farthest that any reading vouches for.
 
     beam: (k, 2) rows of metres and radians, the half-beam narrowing from row to row. A reading vouches for its own
     range on its axis, and off it for no more than the range at which the half-beam has narrowed to that angle.
     Readings that must not spread (no echo, rejected) are nan and vouch for nothing; nan where nobody vouches.
+    noise: metres, of a reading. The farthest of many noisy readings of one wall lies beyond it by what is to be
+    expected of their number, and is drawn back by that.
     """
     widest = float(beam[0, 1])
     if widest <= 0:
         return ranges.copy()
     first, last = _windows(bearings, widest, full_turn)
-    return _vouched(bearings, ranges, first, last, beam)
+    smooth = _smoothed(ranges, full_turn)
+    farthest, rivals, excess = _vouched(bearings, ranges, smooth, np.column_stack([first, last]), beam, noise)
+    return farthest - np.minimum(noise * expected_maxima(int(np.max(rivals)))[rivals], excess)
+
+
+def expected_maxima(most: int) -> Floats:
+    """Expected maximum (most + 1,) of so many standard normal values, 0 of none (Blom 1958)."""
+    counts = np.arange(1, most + 1)
+    return np.concatenate([[0.0], ndtri((counts - 0.375) / (counts + 0.25))])
 
 
 def smeared(opened: Floats, tolerance: float, widest_step: int, full_turn: bool) -> Integers:
@@ -61,20 +72,47 @@ def _windows(bearings: Floats, half_beam: float, full_turn: bool) -> tuple[Integ
     return first, last
 
 
+def _smoothed(ranges: Floats, full_turn: bool) -> Floats:
+    """Mean (n,) of each reading and its two neighbours on both sides; nan where one of them is."""
+    padded = np.pad(ranges, 2, mode="wrap" if full_turn else "edge")
+    return np.asarray(np.mean(np.stack([padded[k : k + ranges.size] for k in range(5)]), axis=0))
+
+
 @compiled
-def _vouched(bearings: Floats, ranges: Floats, first: Integers, last: Integers, beam: Floats) -> Floats:
+def _vouched(
+    bearings: Floats, ranges: Floats, smooth: Floats, windows: Integers, beam: Floats, noise: float
+) -> tuple[Floats, Integers, Floats]:
+    """The farthest vouched for (n,), how many readings (n,) noise alone keeps from being it, and its lead on them (n,).
+
+    Rivals are told by the smoothed ranges, which know the wall better than a reading does.
+    """
     n = ranges.size
-    farthest = np.full(n, np.nan)
+    farthest, rivals, lead = np.full(n, np.nan), np.ones(n, dtype=np.int64), np.zeros(n)
     for i in range(n):
-        for j in range(first[i], last[i] + 1):
-            value = ranges[j % n]
-            if np.isnan(value):
-                continue
-            aside = abs((bearings[i] - bearings[j % n] + np.pi) % (2 * np.pi) - np.pi)
-            value = min(value, _heard_to(aside, beam))
-            if not farthest[i] >= value:
-                farthest[i] = value
-    return farthest
+        limited, top = False, 0.0
+        for j in range(windows[i, 0], windows[i, 1] + 1):
+            value = _said(bearings, ranges, beam, i, j % n)
+            if not np.isnan(value) and not farthest[i] >= value:
+                farthest[i], limited = value, value < ranges[j % n]
+            if value == ranges[j % n] and smooth[j % n] > top:
+                top = smooth[j % n]
+        if np.isnan(farthest[i]) or limited:  # what the beam's reach limits has no noise
+            continue
+        count, total = 0, 0.0
+        for j in range(windows[i, 0], windows[i, 1] + 1):
+            value = _said(bearings, ranges, beam, i, j % n)
+            if value == ranges[j % n] and smooth[j % n] >= top - noise:
+                count, total = count + 1, total + value
+        if count > 1:
+            rivals[i], lead[i] = count, max(farthest[i] - total / count, 0.0)
+    return farthest, rivals, lead
+
+
+@compiled
+def _said(bearings: Floats, ranges: Floats, beam: Floats, i: int, j: int) -> float:
+    """How far reading j vouches for free space along bearing i; nan for a reading that vouches for nothing."""
+    aside = abs((bearings[i] - bearings[j] + np.pi) % (2 * np.pi) - np.pi)
+    return float(ranges[j] if np.isnan(ranges[j]) else min(ranges[j], _heard_to(aside, beam)))
 
 
 @compiled
