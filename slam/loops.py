@@ -31,6 +31,14 @@ class VerificationSettings:
     firmness: float = 0.05  # smallest over largest information on position; larger refuses long corridors
 
 
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """A loop that was tried from the newest keyframe to an earlier one, by its place in the graph, and its outcome."""
+
+    fixed: int
+    found: Alignment | str
+
+
 def close_loop(
     percept: Percept,
     pose: Floats,

@@ -16,7 +16,8 @@ from frontend.local_map import Faces
 from frontend.registration import Alignment
 from frontend.rigid_motion import between, compose
 from frontend.scan import Floats, Scan
-from slam.loops import VerificationSettings, close_loop
+from slam.logbook import Logbook
+from slam.loops import Tried, VerificationSettings, close_loop
 from slam.perception import FrontendSettings, Percept, perceive
 from slam.tracking import Placed, TrackingSettings, track, turned
 
@@ -57,10 +58,11 @@ class _Keyframe:
 
 
 class Mapper:
-    """Grows with every scan; `result` may be asked for at any moment."""
+    """Grows with every scan; `result` may be asked for at any moment. A logbook with answers makes it go on there."""
 
-    def __init__(self, frontend: FrontendSettings, settings: MapperSettings) -> None:
+    def __init__(self, frontend: FrontendSettings, settings: MapperSettings, logbook: Logbook | None = None) -> None:
         self.frontend, self.settings = frontend, settings
+        self.logbook = logbook or Logbook()
         self.percepts: list[Percept] = []
         self.timings = {"front end": 0.0, "tracking": 0.0, "loops": 0.0, "graph": 0.0}
         self._odometry = Odometry(settings.odometry)
@@ -176,8 +178,8 @@ class Mapper:
         wheels = between(self.percepts[-2].scan.odometry, percept.scan.odometry)
         keyframe, step = self._relative[-1]
         last = compose(self._keyframes[keyframe].pose, step)
-        recent = [keyframe.faces for keyframe in self._keyframes[-self.settings.tracking.recent :]]
-        placed = track(percept, last, self._odometry.predict(wheels), recent, self.settings.tracking)
+        move = self._odometry.predict(wheels)
+        placed = self.logbook.answer(lambda: track(percept, last, move, self._recent(), self.settings.tracking))
         if placed.refused is not None:
             self._decisions.append(Decision("registration", (index,), accepted=False, reason=placed.refused))
             return placed
@@ -191,6 +193,9 @@ class Mapper:
             self._decisions.append(Decision("odometry", (index - 1, index), accepted=False, reason=reason))
             self._slipped = True
         return placed
+
+    def _recent(self) -> list[Faces]:
+        return [keyframe.faces for keyframe in self._keyframes[-self.settings.tracking.recent :]]
 
     def _add_keyframe(self, percept: Percept, placed: Placed, step: Floats) -> None:
         old, new = self._keyframes[-1], len(self._keyframes)
@@ -219,16 +224,14 @@ class Mapper:
         if np.all(self._way < (self.settings.loop_metres, self.settings.loop_radians)):
             return False
         self._way = np.zeros(2)
-        poses = np.array([keyframe.pose for keyframe in self._keyframes])
         surprise = False
-        for candidate in candidates(poses, self._drift, self.settings.loops):
-            newest = self._keyframes[-1]
-            found = self._verify(candidate)
-            scans = (self._keyframes[candidate.pose].scan, newest.scan)
+        newest = self._keyframes[-1]
+        for tried in self.logbook.answer(self._tried_loops):
+            found, scans = tried.found, (self._keyframes[tried.fixed].scan, newest.scan)
             if isinstance(found, str):
                 self._decisions.append(Decision("loop", scans, accepted=False, reason=found))
                 continue
-            self._add_loop(candidate.pose, found)
+            self._add_loop(tried.fixed, found)
             apart = between(newest.pose, found.pose_in_fixed)
             fit = f"{found.matched:.0%} matched, {found.residual * 100:.1f} cm rms"
             reason = f"{fit}, {np.hypot(*apart[:2]):.2f} m from the graph"
@@ -237,6 +240,11 @@ class Mapper:
                 np.hypot(*apart[:2]) > self.settings.mend_metres or abs(apart[2]) > self.settings.mend_radians
             )
         return surprise
+
+    def _tried_loops(self) -> tuple[Tried, ...]:
+        poses = np.array([keyframe.pose for keyframe in self._keyframes])
+        found = candidates(poses, self._drift, self.settings.loops)
+        return tuple(Tried(candidate.pose, self._verify(candidate)) for candidate in found)
 
     def _verify(self, candidate: Candidate) -> Alignment | str:
         beside, newest = self.settings.verification.beside, self._keyframes[-1]

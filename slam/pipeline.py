@@ -12,6 +12,7 @@ from backend.estimate import Estimate
 from backend.polygon_merging import merge_views
 from backend.room_map import RoomMap
 from frontend.scan import Scan
+from slam.checkpoint import Keeper
 from slam.mapper import Mapper
 from slam.perception import Percept
 from slam.settings import Settings
@@ -27,11 +28,16 @@ class Merged:
     timings: dict[str, float]
 
 
-def merge_scans(scans: Iterable[Scan], settings: Settings) -> Merged:
-    """The room map of scans in their order; any iterable will do, a log as well as a live stream."""
-    mapper = Mapper(settings.frontend, settings.poses)
+def merge_scans(scans: Iterable[Scan], settings: Settings, keeper: Keeper | None = None) -> Merged:
+    """The room map of scans in their order; any iterable will do, a log as well as a live stream.
+
+    keeper: writes checkpoints, and knows what was answered if the run goes on from one.
+    """
+    mapper = Mapper(settings.frontend, settings.poses, keeper.logbook if keeper else None)
     for scan in scans:
         mapper.add(scan)
+        if keeper is not None:
+            keeper.passed(scan)
     estimate = mapper.result()
     clock = perf_counter()
     room = merge_views([percept.view for percept in mapper.percepts], estimate.poses, settings.merging)

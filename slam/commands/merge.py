@@ -6,10 +6,13 @@ from typing import Annotated
 import typer
 
 from slam import figures, toml_file
+from slam.checkpoint import CheckpointError, Keeper, resumed
 from slam.commands.console import err, out, print_values, progress
 from slam.commands.plan import told
-from slam.pipeline import merge_scans
+from slam.logbook import Logbook
+from slam.pipeline import Merged, merge_scans
 from slam.planning import tour_or_reason
+from slam.readers.recording import Recording
 from slam.recordings import open_recording
 from slam.result_folder import Source, report_of, write_report, write_result
 from slam.settings import Settings, knowing
@@ -23,13 +26,18 @@ def merge(
     settings: Annotated[Path | None, typer.Option(help="TOML file with what differs from the defaults.")] = None,
     format_name: Annotated[str | None, typer.Option("--format", help="The recording's format, if not guessed.")] = None,
     strict: Annotated[bool, typer.Option(help="Stop at the first damaged line instead of leaving it out.")] = False,
+    every: Annotated[int, typer.Option("--checkpoint-every", min=1, help="Scans between two checkpoints.")] = 200,
 ) -> None:
-    """Turn a recording into a room map with two planned paths."""
+    """Turn a recording into a room map with two planned paths.
+
+    A run that was killed goes on from its last checkpoint, FOLDER.checkpoint, when the same command is given again.
+    """
     check_place(to)
     opinions = Settings() if settings is None else toml_file.load(settings, Settings)
     drive = open_recording(recording, format_name, strict=strict)
     opinions = knowing(opinions, drive.odometry_noise)
-    merged = merge_scans(progress(drive.scans), opinions)
+    keeper = _keeper(_checkpoint_of(to), every, drive, opinions)
+    merged = _kept(drive, opinions, keeper)
     paths, trouble = tour_or_reason(merged.room.safety, merged.estimate.poses[0], opinions.planning)
     report = report_of(merged, drive, Source(recording, format_name), paths) | {"tour": trouble}
     found = {name: answer.path.poses for name, answer in paths.items() if answer.path is not None}
@@ -38,6 +46,7 @@ def merge(
         write_result(folder, merged, drive, opinions)
         figures.draw(story, folder / "figures")
         write_report(folder, report)
+    keeper.path.unlink(missing_ok=True)
     for damaged in drive.damaged:
         err.print(f"left out or mended: {damaged}")
     print_values({**report["counts"], **{f"{name} (s)": value for name, value in report["timings"].items()}})
@@ -46,3 +55,32 @@ def merge(
     if trouble is not None:
         out.print(f"no path planned: {trouble}")
     out.print(f"{to}: map.geojson, trajectory.tum, report.json, settings.toml, figures")
+
+
+def _checkpoint_of(to: Path) -> Path:
+    """Beside the folder, which itself is only there once it is whole."""
+    return to.with_name(f"{to.name}.checkpoint")
+
+
+def _keeper(path: Path, every: int, drive: Recording, opinions: Settings) -> Keeper:
+    """Goes on from the checkpoint at `path` if there is one of this run."""
+    if path.exists():
+        try:
+            keeper = resumed(path, every, drive.scans, opinions)
+        except CheckpointError as unfit:
+            err.print(f"starting over: {unfit}")
+        else:
+            err.print(f"going on after scan {keeper.known} of {len(drive.scans)}, from {path}")
+            return keeper
+    return Keeper(path, every, opinions, Logbook())
+
+
+def _kept(drive: Recording, opinions: Settings, keeper: Keeper) -> Merged:
+    """The merged recording; an interruption leaves a checkpoint and says how to go on."""
+    try:
+        return merge_scans(progress(drive.scans), opinions, keeper)
+    except KeyboardInterrupt:
+        keeper.write()
+        done = max(keeper.scans, keeper.known)
+        err.print(f"stopped after scan {done} of {len(drive.scans)}: the same command goes on from {keeper.path}")
+        raise typer.Exit(130) from None
