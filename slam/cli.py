@@ -11,6 +11,7 @@ from slam.commands.merge import merge
 from slam.commands.plan import plan
 from slam.commands.score import score
 from slam.commands.simulate import simulate
+from slam.commands.view import view
 from slam.failures import FAILURES
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
