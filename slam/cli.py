@@ -15,7 +15,7 @@ from slam.commands.view import view
 from slam.failures import FAILURES
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
-for command in (merge, score, plan, draw, simulate, doctor):
+for command in (merge, score, plan, draw, simulate, view, doctor):
     app.command()(command)
 
 

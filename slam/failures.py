@@ -12,6 +12,7 @@ from slam.result_folder import ResultError
 from slam.room_file import RoomFileError
 from slam.serve.door import DoorError
 from slam.simulation.record import SimulationError
+from slam.simulation.recording_files import RecordingPlaceError
 from slam.simulation.world import PlanError
 from slam.toml_file import TomlFileError
 from slam.trajectory_file import TrajectoryFileError
@@ -19,9 +20,7 @@ from slam.trajectory_scores import RelationsError
 from slam.whole_output import OutputError
 
 FAILURES = (
-    CheckpointError,
     DoorError,
-    ExportError,
     MapScoreError,
     MergingError,
     OutputError,
