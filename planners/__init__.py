@@ -2,7 +2,8 @@
 
 World and robot: `world`, `robot`, `outline`, `poses`, `raster`. What they answer: `path`. Who checks them: `certify`.
 Generalized cones, `generalized_cones`: `freeways` (facing walls, spines), `slices`, `orientations` and `circular`
-(legal headings), `spine_graph`, `spine_search`, `way_in`, `headings`, `lost_headings`, `cone_outlines`.
+(legal headings), `spine_graph`, `spine_search`, `way_in`, `entrances`, `chains`, `headings`, `lost_headings`,
+`cone_outlines`.
 Configuration space, `configuration_space`: `box_space` with `cells` (labels), `subdivision` (boxes), `channels`
 (search); `disc_space` with `visibility` (the exact roadmap); `explain` (the gap that is too narrow).
 Shared: `motion` (straight motions proved free), `shortcut`, `state_queue`, `insertion`, `compiled`.

@@ -9,9 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from planners.chains import Chain, entered, motion_of, straight, threaded
 from planners.cone_outlines import cone_outlines
+from planners.entrances import COST, NODE, entrances
 from planners.freeways import facing_pairs, spines
-from planners.headings import Arc, least_turning
 from planners.lost_headings import why_not
 from planners.motion import Course, clearance_of, course_of
 from planners.path import Answer, Cone, Path
@@ -20,8 +21,7 @@ from planners.robot import Robot
 from planners.shortcut import shortened
 from planners.slices import Body, Slices, slices_of
 from planners.spine_graph import SpineGraph, graph_of
-from planners.spine_search import Route, route
-from planners.way_in import Chain, common, departures, entrances, way
+from planners.spine_search import Route, landmarks_of, route
 from planners.world import World
 
 Floats = NDArray[np.float64]
@@ -43,7 +43,8 @@ class ConesSettings:
 
 @dataclass(frozen=True, eq=False)
 class Cones:
-    """A world prepared for one robot. runs (k, 8): the spines, rows of `freeways.spines`."""
+    """A world prepared for one robot. runs (k, 8): the spines, rows of `freeways.spines`; landmarks (n, l): see
+    `spine_search`."""
 
     world: World
     robot: Robot
@@ -52,6 +53,7 @@ class Cones:
     runs: Floats
     slices: Slices
     graph: SpineGraph
+    landmarks: Floats
     course: Course
 
 
@@ -68,9 +70,9 @@ def prepare(world: World, robot: Robot, settings: ConesSettings) -> Cones:
     pairs = facing_pairs(body.ends, world.normals, world.offsets)
     runs = _distinct(spines(pairs, body.ends, lines, robot.width, settings.crowding), world.grid)
     slices, kept = slices_of(runs, body)
-    return Cones(
-        world, robot, settings, body, runs[kept], slices, graph_of(slices, settings.caution), course_of(world, robot)
-    )
+    graph = graph_of(slices, settings.caution)
+    course = course_of(world, robot)
+    return Cones(world, robot, settings, body, runs[kept], slices, graph, landmarks_of(graph), course)
 
 
 def drawn(cones: Cones) -> tuple[Cone, ...]:
@@ -87,11 +89,11 @@ def query(cones: Cones, start: Pose, goal: Pose) -> Answer:
     begin = standing(cones.world, cones.robot, start, "start")
     end = standing(cones.world, cones.robot, goal, "goal")
     through = _through(cones, begin, end)
-    chains = [chain for chain in (_straight(cones, begin, end), through) if isinstance(chain, Chain)]
+    chains = [chain for chain in (straight(cones.body, begin, end), through) if isinstance(chain, Chain)]
     if not chains:
         reason = why_not(cones.slices, cones.graph, np.asarray(through), end)
         return Answer("not found", f"no way along {len(cones.runs)} cones: {reason}")
-    return _found(cones, _poses(min(chains, key=lambda chain: chain.cost)))
+    return _found(cones, motion_of(min(chains, key=lambda chain: chain.cost)))
 
 
 def _found(cones: Cones, poses: Floats) -> Answer:
@@ -119,63 +121,24 @@ def _distinct(runs: Floats, grid: float) -> Floats:
     return np.ascontiguousarray(runs[np.sort(first)])
 
 
-def _straight(cones: Cones, begin: Floats, end: Floats) -> Chain | None:
-    """The straight way, if some heading is legal all along it."""
-    here = way(cones.body, end[:2], end[:2])[0]
-    if np.isfinite(end[2]):
-        here = np.array([arc for arc in here if (end[2] - arc[0]) % (2 * np.pi) <= arc[1] - arc[0]]).reshape(-1, 2)
-    for chain, arrived in departures(cones.body, begin, end[:2]):
-        for turned, _, arc_end in common(np.array([arrived]), here):
-            last: Arc = (float(end[2]), float(end[2])) if np.isfinite(end[2]) else arc_end
-            points = (*chain.points, end[:2], end[:2])
-            return Chain(points, (*chain.legs, turned, last), (*chain.turns, arrived, arc_end), chain.cost)
-    return None
-
-
 def _through(cones: Cones, begin: Floats, end: Floats) -> Chain | NDArray[np.bool_]:
     """The best way through the graph of spines; without one, which nodes (n,) can be reached."""
-    total, most = len(cones.graph.arcs), cones.settings.entrances
-    into, out = _entries(cones, begin, most), _entries(cones, end, most)
-    entry, leave = np.full(total, np.inf), np.full(total, np.inf)
-    for lengths, chains in ((entry, into), (leave, out)):
-        for node, chain in chains.items():
-            lengths[node] = chain.cost
-    found = route(cones.graph, entry, leave, end[:2])
-    return _joined(cones.graph, into, found, out) if isinstance(found, Route) else found
+    into, out = _entries(cones, begin), _entries(cones, end)
+    entry, leave = (np.full(len(cones.graph.arcs), np.inf) for _ in range(2))
+    for metres, rows in ((entry, into), (leave, out)):
+        np.minimum.at(metres, rows[:, NODE].astype(int), rows[:, COST])
+    found = route(cones.graph, cones.landmarks, entry, leave)
+    if not isinstance(found, Route):
+        return found
+    first, last = _cheapest(into, int(found.nodes[0])), _cheapest(out, int(found.nodes[-1]))
+    return threaded(cones.graph, entered(cones.graph, first, begin), found, entered(cones.graph, last, end).reversed())
 
 
-def _entries(cones: Cones, pose: Floats, most: int) -> dict[int, Chain]:
-    """The cheapest way in for every node that a pose reaches."""
-    best: dict[int, Chain] = {}
-    for node, chain in entrances(cones.body, cones.slices, cones.graph, pose, most):
-        if node not in best or chain.cost < best[node].cost:
-            best[node] = chain
-    return best
+def _entries(cones: Cones, pose: Floats) -> Floats:
+    return entrances(cones.body, cones.slices, cones.graph, pose, cones.settings.entrances)
 
 
-def _joined(graph: SpineGraph, into: dict[int, Chain], found: Route, out: dict[int, Chain]) -> Chain:
-    first, last = into[int(found.nodes[0])], out[int(found.nodes[-1])].reversed()
-    between = [graph.stop_points[graph.node_stop[node]] for node in found.nodes[1:]]
-    legs: list[Arc] = [(float(low), float(high)) for low, high in graph.edge_arcs[found.edges]]
-    turns: list[Arc] = [(float(low), float(high)) for low, high in graph.arcs[found.nodes]]
-    points = (*first.points, *between, *last.points[1:])
-    cost = first.cost + float(graph.costs[found.edges].sum()) + last.cost
-    return Chain(points, (*first.legs, *legs, *last.legs), (*first.turns, *turns, *last.turns), cost)
-
-
-def _poses(chain: Chain) -> Floats:
-    """The motion (p, 3): along every leg at its heading, turning on the spot between legs."""
-    headings = least_turning(chain.legs, chain.turns)
-    points = np.array(chain.points)
-    poses = np.concatenate([np.column_stack([points[:-1], headings]), np.column_stack([points[1:], headings])], axis=1)
-    flat = poses.reshape(-1, 3)
-    moved = np.concatenate([[True], np.abs(np.diff(flat, axis=0)).max(axis=1) > 0])
-    return _without_waypoints(flat[moved])
-
-
-def _without_waypoints(poses: Floats) -> Floats:
-    """Poses (k, 3) without those at which neither the direction nor the heading changes."""
-    moves = np.diff(poses, axis=0)
-    units = moves / np.linalg.norm(moves, axis=1, keepdims=True)
-    bends = np.abs(np.diff(units, axis=0)).max(axis=1, initial=0) > 1e-9
-    return np.asarray(poses[np.concatenate([[True], bends, [True]])] if len(poses) > 1 else poses)
+def _cheapest(rows: Floats, node: int) -> Floats:
+    """The row of the cheapest way to a node."""
+    there = rows[rows[:, NODE] == node]
+    return np.asarray(there[np.argmin(there[:, COST])])

@@ -1,6 +1,7 @@
 """Headings along a path for the least turning in all, given the arcs that are legal on every piece of it."""
 
 from collections.abc import Sequence
+from math import inf, isfinite
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,9 +35,9 @@ def least_turning(legs: Sequence[Arc], turns: Sequence[Arc]) -> Floats:
 
 def _within(low: float, high: float) -> float:
     """A heading between two limits, of which none, one or both may be infinite."""
-    if np.isfinite(low) and np.isfinite(high):
+    if isfinite(low) and isfinite(high):
         return (low + high) / 2
-    return low if np.isfinite(low) else high if np.isfinite(high) else 0.0
+    return low if isfinite(low) else high if isfinite(high) else 0.0
 
 
 def _lifted(legs: Sequence[Arc], turns: Sequence[Arc]) -> list[Arc]:
@@ -58,4 +59,4 @@ def _lifted(legs: Sequence[Arc], turns: Sequence[Arc]) -> list[Arc]:
 
 
 def _open(arc: Arc) -> Arc:
-    return (-np.inf, np.inf) if arc[1] - arc[0] >= CIRCLE else arc
+    return (-inf, inf) if arc[1] - arc[0] >= CIRCLE else arc
