@@ -12,6 +12,7 @@ from backend.contours import as_polygons, assemble, contours
 from backend.decisions import decisions_of
 from backend.doors import DoorSettings, Opening, doors_of
 from backend.evidence import Counts
+from backend.far_ground import far_ground
 from backend.hidden_objects import ObjectSettings, objects_in, without_slivers
 from backend.leak_repair import closed, leaks, open_bins, standing, supported_bins
 from backend.provenance import boundary_edges, label_edges
@@ -29,6 +30,7 @@ class ReadingSettings:
     """Opinions about turning votes into a map, in metres."""
 
     opening: float = 0.05  # larger removes wider slits and spikes of free space
+    roomy: float = 0.15  # larger clears only wider ground on a mere bound: a door's arc, a sonar's silence
     inset: float = 0.05  # larger keeps plans farther from surfaces
     spacing: float = 0.05  # larger labels faster, by fewer samples
     reach: float = 0.06  # larger lets samples farther off support an edge, and faces farther off attract it
@@ -43,12 +45,16 @@ class ReadingSettings:
 class PlacedViews:
     """Views as they voted, in rising order of index.
 
-    index: (v,). rings: each (m, 2), counter-clockwise; reals: each (m,), edge i to i + 1 was measured.
+    index: (v,). rings: each (m, 2), counter-clockwise, of what is surely free; far: by row, the same ring up to its
+    bounds, of views with a wide beam; aside: (n,) metres the surface of each sample may lie to its side;
+    reals: each (m,), edge i to i + 1 was measured.
     origins: (v, 2). openings: each (d, 2, 2) jambs the infrared reported.
     """
 
     index: NDArray[np.int64]
     rings: list[Floats]
+    far: dict[int, Floats]
+    aside: Floats
     reals: list[NDArray[np.bool_]]
     origins: Floats
     openings: list[Floats]
@@ -63,6 +69,7 @@ def read_map(
     mask = counts.free > counts.wall
     bins = bins.where(standing(bins, sight, settings.panel))
     mask = closed(mask, bins.where(open_bins(bins, mask, counts)), counts, settings.panel)
+    mask |= _far_ground(views, samples, mask, counts, settings.roomy)
     free = _polygons(mask, faces, counts, settings)
     free = _known_ground(free, views.origins, settings.least_area)
     free = without_slivers(free, samples.points, settings.reach, settings.objects)
@@ -77,11 +84,27 @@ def read_map(
     return _by_index(room_map, views.index)
 
 
+def _far_ground(
+    views: PlacedViews, samples: Samples, mask: NDArray[np.bool_], counts: Counts, roomy: float
+) -> NDArray[np.bool_]:
+    """What the views only bound, as far as the others leave it free and a disc of radius `roomy` fits in."""
+    cleared = mask.copy()
+    for row, far in views.far.items():
+        others = samples.view != row
+        rings, surface = (views.rings[row], far), (samples.where(others), views.aside[others])
+        cleared |= far_ground(views.origins[row], rings, views.openings[row], surface, counts)
+    return _opened(cleared, round(roomy / counts.cell)) if views.far else cleared
+
+
+def _opened(mask: NDArray[np.bool_], radius: int) -> NDArray[np.bool_]:
+    """The mask without what a disc of `radius` cells does not fit into."""
+    y, x = np.mgrid[-radius : radius + 1, -radius : radius + 1]
+    return np.asarray(ndimage.binary_opening(mask, x**2 + y**2 <= radius**2 + 0.5))
+
+
 def _polygons(mask: NDArray[np.bool_], faces: WallFaces, counts: Counts, settings: ReadingSettings) -> MultiPolygon:
     """Free cells, opened, as polygons on the fused faces."""
-    radius = round(settings.opening / counts.cell)
-    y, x = np.mgrid[-radius : radius + 1, -radius : radius + 1]
-    opened = ndimage.binary_opening(mask, x**2 + y**2 <= radius**2 + 0.5)
+    opened = _opened(mask, round(settings.opening / counts.cell))
     traced = [(ring + counts.corner) * counts.cell for ring in contours(opened)]
     rings = [snap_ring(ring, faces, settings.reach) for ring in traced]
     return as_polygons(shapely.simplify(assemble(rings), 0.75 * counts.cell))

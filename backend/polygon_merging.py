@@ -103,9 +103,12 @@ class Merger:
             place(p.view.openings.reshape(-1, 2), pose).reshape(-1, 2, 2)
             for (_, p), pose in zip(everyone, poses, strict=True)
         ]
+        wide = [i for i, (_, placed) in enumerate(everyone) if placed.view.wide is not None]
         return PlacedViews(
             np.array([index for index, _ in everyone]),
             [placed.ballot.free * self.settings.cell for _, placed in everyone],
+            {i: place(everyone[i][1].surfaces.far, poses[i]) for i in wide},
+            np.concatenate([placed.surfaces.aside for _, placed in everyone]),
             [placed.surfaces.real for _, placed in everyone],
             np.array(origins),
             openings,

@@ -20,14 +20,17 @@ Ints = NDArray[np.int64]
 class Surfaces:
     """The measured corners of one view's ring, in the robot's frame.
 
-    ring: (m, 2) the boundary, its long real edges cut into pieces; spread: (m,) metres, of its corners along their
+    ring: (m, 2) the boundary of what is surely free, its long real edges cut into pieces; far: (m, 2) the same up to
+    the view's bounds, corner by corner; spread: (m,) metres, of its corners along their
     beams; real: (m,) whether edge i to i + 1 is real.
     corner: (n,) which corners of the ring were measured; normals: (n, 2) towards the sensor;
     weight: (n,) metres of surface the corner stands for; sigma: (n,) its standard deviation along the beam, metres;
     sure: (n,) whether the stroke is long enough, against its noise, to have a direction.
+    aside: (n,) metres to each side of it that a wide beam leaves the surface.
     """
 
     ring: Floats
+    far: Floats
     spread: Floats
     real: NDArray[np.bool_]
     corner: Ints
@@ -35,12 +38,16 @@ class Surfaces:
     weight: Floats
     sigma: Floats
     sure: NDArray[np.bool_]
+    aside: Floats
 
 
 def surfaces_of(view: View, piece: float, finest: float) -> Surfaces:
     """The surfaces of a view; real edges longer than `piece` are cut, no spread is taken below `finest` (metres)."""
-    ring, real, spread = _cut_long_edges(view, piece)
-    spread = np.maximum(spread, finest)
+    parts = _parts(view, piece)
+    far, spread = _cut(view.boundary, parts), np.maximum(_cut(view.spread, parts), finest)
+    ring = far if view.wide is None else _cut(view.surely_free, parts)
+    real = np.repeat(view.edges == EdgeKind.REAL, parts)
+    aside = np.zeros(len(ring)) if view.wide is None else _cut(view.wide.aside, parts)
     starts, lengths = _chains(real)
     stroke, normals, sure = _strokes(np.vstack([ring, ring]), np.concatenate([spread, spread]), starts, lengths)
     corner = np.flatnonzero(stroke >= 0)
@@ -48,20 +55,23 @@ def surfaces_of(view: View, piece: float, finest: float) -> Surfaces:
     normals = normals[corner] * -np.sign(np.sum(normals[corner] * beam, axis=1, keepdims=True) + 1e-12)
     edge = np.where(real, np.linalg.norm(np.roll(ring, -1, axis=0) - ring, axis=1), 0.0)
     weight = 0.5 * (edge + np.roll(edge, 1))
-    return Surfaces(ring, spread, real, corner, normals, weight[corner], spread[corner], sure[corner])
+    return Surfaces(
+        ring, far, spread, real, corner, normals, weight[corner], spread[corner], sure[corner], aside[corner]
+    )
 
 
-def _cut_long_edges(view: View, piece: float) -> tuple[Floats, NDArray[np.bool_], Floats]:
-    """Ring, real flags and spreads with extra corners on long real edges."""
-    after = np.roll(view.boundary, -1, axis=0)
-    real = view.edges == EdgeKind.REAL
-    length = np.linalg.norm(after - view.boundary, axis=1)
-    parts = np.where(real, np.maximum(np.ceil(length / piece), 1), 1).astype(np.int64)
+def _parts(view: View, piece: float) -> Ints:
+    """Into how many parts (m,) each edge of the view is cut: real ones so that none is longer than `piece`."""
+    length = np.linalg.norm(np.roll(view.boundary, -1, axis=0) - view.boundary, axis=1)
+    return np.where(view.edges == EdgeKind.REAL, np.maximum(np.ceil(length / piece), 1), 1).astype(np.int64)
+
+
+def _cut(values: Floats, parts: Ints) -> Floats:
+    """Values (m, …) of a ring's corners, interpolated along its edges where these are cut into parts (m,)."""
     edge = np.repeat(np.arange(len(parts)), parts)
     share = (np.arange(len(edge)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[edge]
-    ring = view.boundary[edge] + share[:, None] * (after - view.boundary)[edge]
-    spread = view.spread[edge] + share * (np.roll(view.spread, -1) - view.spread)[edge]
-    return ring, real[edge], spread
+    rise = (np.roll(values, -1, axis=0) - values)[edge]
+    return np.asarray(values[edge] + (share * rise.T).T)
 
 
 def _chains(real: NDArray[np.bool_]) -> tuple[Ints, Ints]:

@@ -25,6 +25,18 @@ class ViewError(Exception):
 
 
 @dataclass(frozen=True, eq=False)
+class WideBeam:
+    """What a wide beam leaves open at each corner (m,) of a view's boundary, metres.
+
+    sure: length of beam from the origin that surely met nothing; beyond it the boundary is a bound that one wall in
+    between makes void: an arc in a door, a sonar's silence. aside: how far to each side the surface met may lie.
+    """
+
+    sure: Floats
+    aside: Floats
+
+
+@dataclass(frozen=True, eq=False)
 class View:
     """The star-shaped free space of one scan, in the robot's frame.
 
@@ -32,6 +44,7 @@ class View:
     spread: (m,) standard deviation of each corner along its beam, metres.
     origin: (2,) where the sensor sat, in the robot's frame.
     openings: (d, 2, 2) pairs of door jambs the infrared found (right, left as seen).
+    wide: what a wide beam leaves open; None for a beam as thin as the steps between its bearings.
     """
 
     boundary: Floats
@@ -39,6 +52,7 @@ class View:
     spread: Floats
     origin: Floats
     openings: Floats
+    wide: WideBeam | None = None
 
     def __post_init__(self) -> None:
         """Check the shapes once, at the door."""
@@ -47,11 +61,23 @@ class View:
             raise ViewError(f"a view needs a ring of three corners or more, but got shape {self.boundary.shape}")
         if self.edges.shape != (corners,) or self.spread.shape != (corners,):
             raise ViewError(f"{corners} corners, but {self.edges.size} edges and {self.spread.size} spreads")
+        if self.wide is not None and not self.wide.sure.shape == self.wide.aside.shape == (corners,):
+            raise ViewError(f"{corners} corners, but {self.wide.sure.size} sure lengths of a wide beam")
 
     @property
     def free_space(self) -> Polygon:
         """The polygon inside the boundary."""
         return Polygon(self.boundary)
+
+    @property
+    def surely_free(self) -> Floats:
+        """(m, 2) the ring of what the beams surely passed, corner by corner on the beams of the boundary."""
+        if self.wide is None:
+            return self.boundary
+        beam = self.boundary - self.origin
+        length = np.linalg.norm(beam, axis=1)
+        share = np.where(self.wide.sure < length, self.wide.sure / np.maximum(length, 1e-9), 1.0)
+        return np.where((share < 1)[:, None], self.origin + share[:, None] * beam, self.boundary)
 
 
 def place(points: Floats, pose: Floats) -> Floats:

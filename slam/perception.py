@@ -14,6 +14,7 @@ from frontend.primal_sketch import PrimalSketch, SketchSettings, sketch
 from frontend.rigid_motion import transform
 from frontend.scan import Floats, Scan
 from frontend.surface import Surface
+from slam.wide_beam import wide_beam
 
 
 @dataclass(frozen=True)
@@ -78,6 +79,7 @@ class Percept:
             self.outline.spread,
             self.fused.origin,
             self.fused.jambs,
+            wide_beam(self.outline, self.fused),
         )
 
 

@@ -1,9 +1,11 @@
 """Claims about views and placing them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from backend.view import EdgeKind, View, ViewError, place
+from backend.view import EdgeKind, View, ViewError, WideBeam, place
 
 SQUARE = np.array([[1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]])
 
@@ -27,3 +29,11 @@ def test_arrays_that_do_not_fit_are_refused_with_numbers() -> None:
 def test_placing_turns_first_and_then_shifts() -> None:
     placed = place(np.array([[1.0, 0.0]]), np.array([2.0, 3.0, np.pi / 2]))
     np.testing.assert_allclose(placed, [[2.0, 4.0]], atol=1e-12)
+
+
+def test_what_is_surely_free_ends_on_the_beams_of_the_boundary() -> None:
+    wide = WideBeam(np.array([1.0, np.inf, np.inf, 0.5]), np.zeros(4))
+    ring = replace(square_view(), wide=wide).surely_free
+    np.testing.assert_allclose(ring[1:3], SQUARE[1:3])
+    np.testing.assert_allclose(np.linalg.norm(ring[[0, 3]], axis=1), [1.0, 0.5])
+    np.testing.assert_allclose(ring[:, 0] * SQUARE[:, 1], ring[:, 1] * SQUARE[:, 0], atol=1e-12)
