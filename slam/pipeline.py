@@ -38,6 +38,11 @@ def merge_scans(scans: Iterable[Scan], settings: Settings, keeper: Keeper | None
         mapper.add(scan)
         if keeper is not None:
             keeper.passed(scan)
+    return merged_so_far(mapper, settings)
+
+
+def merged_so_far(mapper: Mapper, settings: Settings) -> Merged:
+    """What the scans that the mapper took in so far give; it may take in more afterwards."""
     estimate = mapper.result()
     clock = perf_counter()
     room = merge_views([percept.view for percept in mapper.percepts], estimate.poses, settings.merging)

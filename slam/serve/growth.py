@@ -13,7 +13,7 @@ import numpy as np
 
 from backend.polygon_merging import merge_views
 from slam.mapper import Mapper
-from slam.pipeline import Merged
+from slam.pipeline import Merged, merged_so_far
 from slam.planning import tour_or_reason
 from slam.readers.recording import Recording
 from slam.recordings import open_recording
@@ -48,7 +48,7 @@ def grow(errand: Errand) -> Iterator[bytes]:
         yield scan_message(index, mapper.percepts[-1], pose)
         yield from looks.look_if_due()
     yield pack("stage", {"says": "solving the graph and merging all views"})
-    merged = _finished(mapper, settings)
+    merged = merged_so_far(mapper, settings)
     yield from result_messages(merged)
     yield pack("stage", {"says": "planning a tour"})
     report = _written(merged, drive, errand, settings)
@@ -86,13 +86,6 @@ class _Looks:
         yield poses_message(poses)
         yield room_message(room, len(poses), np.empty((0, 2)), final=False)
         self._spent += perf_counter() - clock
-
-
-def _finished(mapper: Mapper, settings: Settings) -> Merged:
-    estimate = mapper.result()
-    clock = perf_counter()
-    room = merge_views([percept.view for percept in mapper.percepts], estimate.poses, settings.merging)
-    return Merged(tuple(mapper.percepts), estimate, room, {**mapper.timings, "merging": perf_counter() - clock})
 
 
 def _written(merged: Merged, drive: Recording, errand: Errand, settings: Settings) -> dict[str, Any]:
