@@ -66,14 +66,11 @@ def gap_core(opening: Opening, scan: Scan) -> Booleans:
 
 
 def opening_arc(opening: Opening, ranges: Floats, scan: Scan) -> Floats:
-    """Ranges (w,) of the arc: the infrared's horizon or the farthest echo, whichever is farther.
+    """Ranges (w,) between the jambs: the infrared's horizon or the opened sonar range there, whichever is farther.
 
-    A gap wider than the beam lets the sonar look through, so there each bearing keeps its own opened range where that
-    is farther: one far echo in the middle says nothing of the sides.
+    The paper draws one arc at the farthest echo of the whole opening. One far echo says nothing outside its own beam:
+    from within a doorway that arc would reach deep into the walls on both sides.
     """
     horizon = scan.sensor.infrared_range
     assert horizon is not None
-    own = ranges[opening.readings]
-    if np.any(gap_core(opening, scan)):
-        return np.maximum(own, horizon)
-    return np.full(own.size, max(horizon, float(np.max(own))))
+    return np.maximum(ranges[opening.readings], horizon)

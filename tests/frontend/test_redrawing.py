@@ -65,3 +65,12 @@ def test_a_reading_nearer_than_a_corner_can_shorten_it_is_a_wall_of_its_own() ->
     ranges = np.where(np.abs(bearings) < np.radians(12), 1.9, 3.0 / np.cos(np.abs(bearings) - np.radians(12)))
     opening, scan = silent_between(8, np.minimum(ranges, 6.0))
     assert why_closed(opening, all_measured(scan), scan, 0.15) is None
+
+
+def test_an_echo_from_beyond_the_horizon_opens_no_more_than_its_own_beam() -> None:
+    ranges = np.where(np.abs(turn(256)) < np.radians(4), 7.0, np.where(np.abs(turn(256)) < np.radians(15), 3.5, 2.0))
+    opening, scan = silent_between(15, ranges)
+    arc = opening_arc(opening, ranges, scan)
+    assert np.max(arc) == 7.0
+    assert np.isclose(np.mean(arc == 7.0), 4 / 15, atol=0.1)
+    assert np.min(arc) == 3.5
