@@ -1,9 +1,11 @@
 """The one door to numba: hot loops over plain arrays become machine code, cached on disk, with the lock released."""
 
-from collections.abc import Callable
-from typing import ParamSpec, TypeVar
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, ParamSpec, TypeVar
 
 import numba
+from numba.core import event
 
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
@@ -16,3 +18,25 @@ def compiled(function: Callable[Arguments, Result]) -> Callable[Arguments, Resul
     """
     machine_code: Callable[Arguments, Result] = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
     return machine_code
+
+
+class _Watch(event.Listener):  # type: ignore[misc]
+    """Hears of loops that are about to be compiled; those that come from the cache are silent."""
+
+    def __init__(self, tell: Callable[[], None]) -> None:
+        self.tell, self.heard = tell, False
+
+    def on_start(self, event: Any) -> None:
+        if not self.heard:
+            self.heard = True
+            self.tell()
+
+    def on_end(self, event: Any) -> None:
+        """Nothing to do: compiling one loop leads to the next."""
+
+
+@contextmanager
+def compiling(tell: Callable[[], None]) -> Iterator[None]:
+    """Call `tell` before the first loop that is compiled within, if any is."""
+    with event.install_listener("numba:compile", _Watch(tell)):
+        yield

@@ -91,8 +91,7 @@ def query(cones: Cones, start: Pose, goal: Pose) -> Answer:
     through = _through(cones, begin, end)
     chains = [chain for chain in (straight(cones.body, begin, end), through) if isinstance(chain, Chain)]
     if not chains:
-        reason = why_not(cones.slices, cones.graph, np.asarray(through), end)
-        return Answer("not found", f"no way along {len(cones.runs)} cones: {reason}")
+        return Answer("not found", f"no way along {len(cones.runs)} cones: {through}")
     return _found(cones, motion_of(min(chains, key=lambda chain: chain.cost)))
 
 
@@ -121,15 +120,18 @@ def _distinct(runs: Floats, grid: float) -> Floats:
     return np.ascontiguousarray(runs[np.sort(first)])
 
 
-def _through(cones: Cones, begin: Floats, end: Floats) -> Chain | NDArray[np.bool_]:
-    """The best way through the graph of spines; without one, which nodes (n,) can be reached."""
+def _through(cones: Cones, begin: Floats, end: Floats) -> Chain | str:
+    """The best way through the graph of spines, or why there is none."""
     into, out = _entries(cones, begin), _entries(cones, end)
+    for rows, name in ((into, "start"), (out, "goal")):
+        if not len(rows):
+            return f"no spine can be reached straight from the {name} at any heading that is legal on the way"
     entry, leave = (np.full(len(cones.graph.arcs), np.inf) for _ in range(2))
     for metres, rows in ((entry, into), (leave, out)):
         np.minimum.at(metres, rows[:, NODE].astype(int), rows[:, COST])
     found = route(cones.graph, cones.landmarks, entry, leave)
     if not isinstance(found, Route):
-        return found
+        return why_not(cones.slices, cones.graph, found, end)
     first, last = _cheapest(into, int(found.nodes[0])), _cheapest(out, int(found.nodes[-1]))
     return threaded(cones.graph, entered(cones.graph, first, begin), found, entered(cones.graph, last, end).reversed())
 

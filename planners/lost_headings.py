@@ -12,10 +12,8 @@ Floats = NDArray[np.float64]
 
 
 def why_not(slices: Slices, graph: SpineGraph, closed: NDArray[np.bool_], goal: Floats) -> str:
-    """One sentence. closed: (n,) the nodes that were reached; goal: (3,)."""
+    """One sentence. closed: (n,) the nodes that were reached, at least one; goal: (3,)."""
     reached = np.unique(graph.node_stop[closed])
-    if not len(reached):
-        return "no spine can be reached from the start at any heading that is legal on the way"
     cones = np.unique(graph.stops[reached, 0].astype(int))
     ends = np.concatenate([slices.first[cones], slices.first[cones + 1] - 1])
     middles = (slices.pieces[:, :2] + slices.pieces[:, 2:]) / 2

@@ -27,7 +27,9 @@ def standing(world: World, robot: Robot, pose: Pose, name: str) -> Floats:
     place = f"{name} ({checked[0]:g}, {checked[1]:g})"
     point = shapely.Point(checked[:2])
     if not world.free.covers(point):
-        raise PlanningError(f"{place} lies {world.free.distance(point):.3g} m outside of free space")
+        enclosed = any(shapely.Polygon(part.exterior).covers(point) for part in world.free.geoms)
+        where = "in an obstacle" if enclosed else "where no wall encloses it"
+        raise PlanningError(f"{place} lies {world.free.distance(point):.3g} m outside of free space, {where}")
     if robot.is_disc:
         room = float(shapely.distance(world.boundary, point))
         if room <= robot.radius:

@@ -43,7 +43,7 @@ class World:
         return _assemble(shapely.buffer(_sound(free), -GROWTH * grid, join_style="mitre"), grid)
 
     @classmethod
-    def from_obstacles(cls, boundary: Polygon, obstacles: Sequence[Polygon]) -> "World":
+    def from_obstacles(cls, boundary: Polygon | MultiPolygon, obstacles: Sequence[shapely.Geometry]) -> "World":
         """The inside of `boundary` without `obstacles`, which may touch, overlap, cross themselves or have no area."""
         grid = _grid_of(boundary)
         inside = shapely.buffer(_sound(boundary), -GROWTH * grid, join_style="mitre")
@@ -101,7 +101,7 @@ def _grid_of(outline: Polygon | MultiPolygon) -> float:
     return float(2.0 ** np.ceil(np.log2(max(right - left, top - bottom) * FINENESS)))
 
 
-def _sound(polygon: Polygon | MultiPolygon) -> shapely.Geometry:
+def _sound(polygon: shapely.Geometry) -> shapely.Geometry:
     """The same points as a valid geometry: crossings resolved, parts without area kept as lines."""
     return shapely.make_valid(polygon)
 

@@ -81,19 +81,24 @@ def parse_pose(text: str) -> Floats:
     return np.array([*numbers, np.nan][:3])
 
 
-def path_text(path: Path, planner: str) -> str:
-    """The path as GeoJSON: its line, with heading, length and clearance among the properties."""
+def paths_text(answers: dict[str, Answer]) -> str:
+    """The paths of those planners that found one, as GeoJSON: lines, with heading, length and clearance beside them."""
+    features = [_path_feature(answer.path, name) for name, answer in answers.items() if answer.path is not None]
+    return json.dumps({"type": "FeatureCollection", "features": features}) + "\n"
+
+
+def _path_feature(path: Path, planner: str) -> dict[str, Any]:
     properties = {
         "kind": "path",
         "planner": planner,
         "length": path.length,
         "clearance": path.clearance,
+        "turning": path.turning,
         "headings": path.poses[:, 2].tolist(),
         "certificate": path.certificate,
     }
     line = {"type": "LineString", "coordinates": path.poses[:, :2].tolist()}
-    feature = {"type": "Feature", "properties": properties, "geometry": line}
-    return json.dumps({"type": "FeatureCollection", "features": [feature]}) + "\n"
+    return {"type": "Feature", "properties": properties, "geometry": line}
 
 
 def answer_values(answer: Answer) -> dict[str, Any]:

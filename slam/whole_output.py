@@ -14,12 +14,12 @@ class OutputError(Exception):
     """An output that cannot be written where it was asked for."""
 
 
-def write_whole(path: Path, text: str) -> None:
-    """Put `text` at `path`; whoever reads meanwhile sees the old content or the new, never half."""
+def write_whole(path: Path, content: str | bytes) -> None:
+    """Put `content` at `path`; whoever reads meanwhile sees the old content or the new, never half."""
     hidden = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        hidden.write_text(text, encoding="utf-8")
+        hidden.write_bytes(content if isinstance(content, bytes) else content.encode())
         hidden.replace(path)
     except OSError as reason:
         raise OutputError(f"{path} cannot be written: {reason.strerror or reason}") from reason
@@ -29,12 +29,12 @@ def write_whole(path: Path, text: str) -> None:
 
 
 @contextmanager
-def whole_folder(folder: Path) -> Iterator[Path]:
+def whole_folder(folder: Path, mark: str = RESULT_MARK) -> Iterator[Path]:
     """An empty folder to fill; on success it takes the place of `folder`, on failure nothing is left of it.
 
-    Only an earlier result gives way: whatever else lies in `folder` is not ours to delete.
+    Only a folder with the file `mark` gives way: whatever else lies in `folder` is not ours to delete.
     """
-    check_place(folder)
+    check_place(folder, mark)
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         hidden = Path(mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
@@ -50,9 +50,9 @@ def whole_folder(folder: Path) -> Iterator[Path]:
         shutil.rmtree(hidden, ignore_errors=True)
 
 
-def check_place(folder: Path) -> None:
-    """Raise OutputError unless `folder` is free, empty or holds an earlier result."""
+def check_place(folder: Path, mark: str = RESULT_MARK) -> None:
+    """Raise OutputError unless `folder` is free, empty or holds the file `mark` of an earlier run."""
     if folder.exists() and not folder.is_dir():
         raise OutputError(f"{folder} is a file, but a folder is to be written there")
-    if folder.is_dir() and any(folder.iterdir()) and not (folder / RESULT_MARK).exists():
-        raise OutputError(f"{folder} holds other files and no {RESULT_MARK} of an earlier run: choose another folder")
+    if folder.is_dir() and any(folder.iterdir()) and not (folder / mark).exists():
+        raise OutputError(f"{folder} holds other files and no {mark} of an earlier run: choose another folder")

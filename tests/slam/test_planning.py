@@ -7,7 +7,7 @@ import pytest
 from shapely import MultiPolygon, Polygon
 
 from planners.path import Answer, Path, PlanningError
-from slam.planning import PLANNERS, PlanningSettings, answer_values, parse_pose, path_text, tour, tour_or_reason
+from slam.planning import PLANNERS, PlanningSettings, answer_values, parse_pose, paths_text, tour, tour_or_reason
 
 ROOM = MultiPolygon([Polygon([(0, 0), (2, 0), (2, 3), (3, 3), (3, 0), (6, 0), (6, 4), (0, 4)])])
 START = np.array([1.0, 1.0, 0.0])
@@ -47,6 +47,6 @@ def test_answers_are_plain_values() -> None:
     }  # fmt: skip
     nothing = answer_values(Answer("no path", "walled in"))
     assert nothing == {"answer": "no path", "length": None, "clearance": None, "poses": [], "reason": "walled in"}
-    feature = json.loads(path_text(path, "cones"))["features"][0]
+    feature = json.loads(paths_text({"cones": Answer("path", "found", path)}))["features"][0]
     assert feature["geometry"] == {"type": "LineString", "coordinates": [[0, 0], [3, 4]]}
     assert feature["properties"]["headings"] == [0.0, 0.5]
