@@ -27,7 +27,8 @@ class GraphSettings:
 
     loop_width: float = 1.0  # Cauchy width of a loop's residual in sigmas; larger trusts doubtful loops more
     landmark_width: float = 1.345  # Huber width of a sighting's residual in sigmas; larger trusts outliers more
-    iterations: int = 60  # of the final solve; more refines further
+    iterations: int = 60  # of the final solve at most; more refines further
+    settled: float = 1e-4  # relative fall of the error that ends it; larger stops earlier
 
 
 class FactorGraph:
@@ -49,12 +50,14 @@ class FactorGraph:
     @property
     def poses(self) -> Floats:
         """(n, 3) current estimates, in the order they were added."""
-        return np.array([_plain(self._values.atPose2(X(i))) for i in self._poses]).reshape(-1, 3)
+        sorted_by_index = gtsam.utilities.extractPose2(self._values).reshape(-1, 3)
+        return np.asarray(sorted_by_index[_ranks(self._poses)])
 
     @property
     def landmarks(self) -> Floats:
         """(l, 2) current estimates, in the order they were added."""
-        return np.array([self._values.atPoint2(L(i)) for i in self.landmark_indices]).reshape(-1, 2)
+        sorted_by_index = gtsam.utilities.extractPoint2(self._values).reshape(-1, 2)
+        return np.asarray(sorted_by_index[_ranks(self.landmark_indices)])
 
     @property
     def landmark_ties(self) -> list[LandmarkTie]:
@@ -122,7 +125,7 @@ class FactorGraph:
         """Levenberg–Marquardt from the current estimates; loops keep their robust kernel."""
         parameters = gtsam.LevenbergMarquardtParams()
         parameters.setMaxIterations(self.settings.iterations)
-        parameters.setRelativeErrorTol(1e-6)
+        parameters.setRelativeErrorTol(self.settings.settled)
         parameters.setlambdaInitial(1e-6)
         self._values = gtsam.LevenbergMarquardtOptimizer(self._graph, self._values, parameters).optimize()
 
@@ -175,5 +178,6 @@ def _information(covariance: Floats) -> Floats:
     return np.asarray(np.linalg.inv(covariance), np.float64)
 
 
-def _plain(pose: gtsam.Pose2) -> Floats:
-    return np.array([pose.x(), pose.y(), pose.theta()])
+def _ranks(indices: list[int]) -> NDArray[np.int64]:
+    """The place (n,) of each index when they are sorted, as gtsam keeps its values."""
+    return np.argsort(np.argsort(np.array(indices, np.int64)))

@@ -9,6 +9,10 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
+# What is kept of a landmark: as now believed in the room, and as first seen from a pose.
+_ROW = {name: k for k, name in enumerate(("x", "y", "turn", "heading", "own x", "own y", "own heading", "pose"))}
+
+
 @dataclass(frozen=True)
 class LandmarkSettings:
     """When a knot is a landmark seen again."""
@@ -40,14 +44,17 @@ class Sighting:
 
 
 class LandmarkMap:
-    """Grows by sightings; positions are kept up to date from outside."""
+    """Grows by sightings; `settle` moves it when poses and proven landmarks were solved again."""
 
     def __init__(self, settings: LandmarkSettings) -> None:
         self.settings = settings
-        self.positions = np.empty((0, 2))
-        self._turns = np.empty(0)
-        self._headings = np.empty(0)
+        self._rows = np.empty((64, len(_ROW)))  # room for more than there are, so that adding copies nothing
         self._sightings: list[list[Sighting]] = []
+
+    @property
+    def positions(self) -> Floats:
+        """(l, 2) where each landmark is now believed to be."""
+        return self._rows[: len(self._sightings), :2]
 
     @property
     def counts(self) -> Integers:
@@ -62,48 +69,60 @@ class LandmarkMap:
     def see(self, pose_index: int, pose: Floats, knots: Knots) -> list[Sighting]:
         """Match the knots seen at `pose` (3,); the sightings that are worth a factor now (old ones once proven)."""
         worth: list[Sighting] = []
-        placed = _placed(knots.positions, pose)
-        headings = knots.headings + pose[2]
+        placed, headings = _placed(knots.positions, pose), knots.headings + pose[2]
         for k, landmark in enumerate(self._match(placed, knots, headings, pose[2])):
-            known = landmark >= 0
-            index = int(landmark) if known else self._new(placed[k], knots.turns[k], headings[k])
+            index = int(landmark) if landmark >= 0 else len(self._sightings)
+            sighting = Sighting(pose_index, index, knots.positions[k], knots.covariances[k])
+            if landmark < 0:
+                self._new(sighting, knots.turns[k], knots.headings[k], pose)
             seen = self._sightings[index]
-            seen.append(Sighting(pose_index, index, knots.positions[k], knots.covariances[k]))
+            seen.append(sighting)
             if len(seen) == self.settings.proven:
                 worth.extend(seen)
             elif len(seen) > self.settings.proven:
-                worth.append(seen[-1])
+                worth.append(sighting)
         return worth
+
+    def settle(self, poses: Floats, proven: Integers, positions: Floats) -> None:
+        """Each landmark moves with the first of poses (n, 3) that saw it; proven ones (p,) are at positions (p, 2)."""
+        rows = self._rows[: len(self._sightings)]
+        first = poses[rows[:, _ROW["pose"]].astype(np.int64)]
+        cosine, sine, own = np.cos(first[:, 2]), np.sin(first[:, 2]), rows[:, 4:6]
+        rows[:, 0] = first[:, 0] + cosine * own[:, 0] - sine * own[:, 1]
+        rows[:, 1] = first[:, 1] + sine * own[:, 0] + cosine * own[:, 1]
+        rows[:, _ROW["heading"]] = rows[:, _ROW["own heading"]] + first[:, 2]
+        rows[proven, :2] = positions
 
     def _match(self, placed: Floats, knots: Knots, headings: Floats, turn: float) -> Integers:
         """The landmark (k,) of each knot, or −1; each landmark at most once, the surest first."""
         matches = np.full(len(placed), -1)
-        if not len(placed) or not len(self.positions):
+        if not len(placed) or not len(self._sightings):
             return matches
         cosine, sine = np.cos(turn), np.sin(turn)
         axes = np.array([[cosine, -sine], [sine, cosine]])
         spread = axes @ knots.covariances @ axes.T + self.settings.doubt**2 * np.eye(2)
-        offsets = placed[:, None] - self.positions[None]
+        reach = np.sqrt(self.settings.gate * (spread[:, 0, 0] + spread[:, 1, 1]).max())
+        low, high = placed.min(axis=0) - reach, placed.max(axis=0) + reach
+        near = np.flatnonzero(np.all((self.positions > low) & (self.positions < high), axis=1))
+        rows = self._rows[near]
+        offsets = placed[:, None] - rows[None, :, :2]
         distance = np.einsum("kli,kij,klj->kl", offsets, np.linalg.inv(spread), offsets)
-        unlike = np.maximum(
-            np.abs(_wrapped(knots.turns[:, None] - self._turns[None])),
-            np.abs(_wrapped(headings[:, None] - self._headings[None])),
-        )
-        distance[unlike > self.settings.alike] = np.inf
-        for flat in np.argsort(distance, axis=None):
-            k, landmark = np.unravel_index(flat, distance.shape)
-            if distance[k, landmark] > self.settings.gate:
-                break
-            if matches[k] < 0 and landmark not in matches:
-                matches[k] = landmark
+        for own, theirs in ((knots.turns, rows[:, 2]), (headings, rows[:, 3])):
+            distance[np.abs(_wrapped(own[:, None] - theirs[None])) > self.settings.alike] = np.inf
+        possible = np.argwhere(distance <= self.settings.gate)
+        for k, j in possible[np.argsort(distance[possible[:, 0], possible[:, 1]], kind="stable")]:
+            if matches[k] < 0 and near[j] not in matches:
+                matches[k] = near[j]
         return matches
 
-    def _new(self, position: Floats, turn: float, heading: float) -> int:
-        self.positions = np.vstack([self.positions, position])
-        self._turns = np.append(self._turns, turn)
-        self._headings = np.append(self._headings, heading)
+    def _new(self, seen: Sighting, turn: float, heading: float, pose: Floats) -> None:
+        """Add a landmark first seen now, from a pose (3,); its turn, and its heading in the robot's frame."""
+        if len(self._sightings) == len(self._rows):
+            self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
+        position = _placed(seen.position, pose)
+        row = (*position, turn, heading + pose[2], *seen.position, heading, seen.pose)
+        self._rows[len(self._sightings)] = row
         self._sightings.append([])
-        return len(self._sightings) - 1
 
 
 def _placed(points: Floats, pose: Floats) -> Floats:

@@ -108,9 +108,10 @@ class Mapper:
 
     def _settle(self) -> None:
         """Move keyframes and landmarks to where the graph now puts them."""
-        for keyframe, pose in zip(self._keyframes, self._graph.poses, strict=True):
+        poses = self._graph.poses
+        for keyframe, pose in zip(self._keyframes, poses, strict=True):
             keyframe.pose = pose
-        self._landmarks.positions[self._graph.landmark_indices] = self._graph.landmarks
+        self._landmarks.settle(poses, np.array(self._graph.landmark_indices, np.int64), self._graph.landmarks)
 
     def result(self) -> Estimate:
         """The estimate after all scans so far; what comes later is the same whether it was asked for or not."""

@@ -24,6 +24,7 @@ class TrackingSettings:
     recent: int = 12  # keyframes in the local map; larger bridges more occlusion and drifts less, at more cost
     reach: float = 20.0  # metres of map around the robot; larger uses far walls
     good: float = 0.8  # confirmed share under which a wider search is tried; larger searches more often
+    firm: float = 0.05  # firmness under which a wider search is tried where less than `good` matches; larger does more
     poor: float = 0.4  # matched share under which, after that search, a scan is left to odometry; larger refuses more
     window_metres: float = 0.4  # of the wider search; larger finds worse guesses and mistakes more
     window_radians: float = 0.25
@@ -69,8 +70,7 @@ def track(percept: Percept, last: Floats, move: Move, recent: list[Faces], setti
     prior = Guess(guess, np.asarray(np.linalg.inv(doubt), np.float64))
     found = register(percept.surface, local_map, prior, settings.registration)
     seen = look(percept.fused, found.pose_in_fixed, faces, settings.visibility)
-    # New ground matches nothing, which is no fault; walls of the map that should be seen and are not are one.
-    if seen.confirmed < settings.good or found.matched < settings.poor:
+    if _doubtful(found, seen, settings):
         found, seen = _wider(percept, local_map, prior, (found, seen), settings)
     if found.matched < settings.poor:
         reason = (
@@ -80,6 +80,13 @@ def track(percept: Percept, last: Floats, move: Move, recent: list[Faces], setti
         return Placed(guess, by_wheels, found.matched, reason)
     covariance: Floats = np.asarray(np.linalg.inv(found.information + prior.information), np.float64)
     return Placed(found.pose_in_fixed, turned(covariance, -found.pose_in_fixed[2]), found.matched)
+
+
+def _doubtful(found: Alignment, seen: Visibility, settings: TrackingSettings) -> bool:
+    """Whether the scan may lie better elsewhere. New ground matches nothing, which alone is no fault."""
+    # What does not match may be the very wall that would hold a scan that is free to slide.
+    slides = found.matched < settings.good and found.firmness < settings.firm
+    return slides or seen.confirmed < settings.good or found.matched < settings.poor
 
 
 def _wider(

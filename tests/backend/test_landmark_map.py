@@ -105,12 +105,21 @@ def test_a_knot_that_is_sure_only_along_one_direction_is_matched_along_the_other
         assert len(landmarks.positions) == count
 
 
-def test_landmarks_moved_from_outside_are_matched_where_they_are_now() -> None:
+def test_proven_landmarks_are_matched_where_they_are_now() -> None:
     landmarks = LandmarkMap(SETTINGS)
     landmarks.see(0, np.zeros(3), knot(1.0, 2.0))
-    landmarks.positions[[0]] = [[5.0, 5.0]]
+    landmarks.settle(np.zeros((1, 3)), np.array([0]), np.array([[5.0, 5.0]]))
     landmarks.see(1, np.zeros(3), knot(5.0, 5.0))
     np.testing.assert_array_equal(landmarks.counts, [2])
+
+
+def test_a_corner_seen_once_moves_and_turns_with_the_pose_that_saw_it() -> None:
+    landmarks, moved = LandmarkMap(SETTINGS), np.array([4.0, -2.0, 1.0])
+    landmarks.see(0, np.array([1.0, 1.0, 0.3]), knot(1.0, 2.0, heading=0.2))
+    landmarks.settle(moved[None], np.empty(0, np.int64), np.empty((0, 2)))
+    landmarks.see(1, moved, knot(1.0, 2.0, heading=0.2))
+    np.testing.assert_array_equal(landmarks.counts, [2])
+    np.testing.assert_allclose(landmarks.positions, transform(np.array([[1.0, 2.0]]), moved))
 
 
 def test_a_scan_without_knots_changes_nothing() -> None:
