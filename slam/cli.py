@@ -5,8 +5,10 @@ import sys
 import typer
 
 from slam.commands.console import err
+from slam.commands.convert import convert
 from slam.commands.doctor import doctor
 from slam.commands.draw import draw
+from slam.commands.floor_plan import floor_plan
 from slam.commands.merge import merge
 from slam.commands.plan import plan
 from slam.commands.score import score
@@ -15,7 +17,7 @@ from slam.commands.view import view
 from slam.failures import FAILURES
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
-for command in (merge, score, plan, draw, simulate, view, doctor):
+for command in (merge, score, plan, draw, convert, simulate, floor_plan, view, doctor):
     app.command()(command)
 
 

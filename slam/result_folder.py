@@ -1,4 +1,4 @@
-"""The result of a run as a folder: the map, the trajectory and odometry, the settings, the report and the figures."""
+"""The result of a run as a folder: map, trajectory, odometry, pose graph, settings, report and figures."""
 
 import json
 from collections import Counter
@@ -14,6 +14,7 @@ from slam import toml_file
 from slam.perception import perceive
 from slam.pipeline import Merged
 from slam.planning import answer_values
+from slam.pose_graph_file import g2o_text
 from slam.readers.recording import Recording
 from slam.recordings import open_recording
 from slam.room_file import points_of_kind, read_features, read_room, room_text
@@ -22,10 +23,11 @@ from slam.story import Story
 from slam.trajectory_file import Trajectory, read_trajectory, tum_text
 from slam.whole_output import RESULT_MARK, write_whole
 
-MAP, TRAJECTORY, ODOMETRY, SETTINGS, REPORT = (
+MAP, TRAJECTORY, ODOMETRY, GRAPH, SETTINGS, REPORT = (
     "map.geojson",
     "trajectory.tum",
     "odometry.tum",
+    "graph.g2o",
     "settings.toml",
     RESULT_MARK,
 )
@@ -44,12 +46,13 @@ class Source:
 
 
 def write_result(folder: Path, merged: Merged, recording: Recording, settings: Settings) -> None:
-    """Map, trajectory, odometry and settings; the report and the figures come with what else is known by then."""
+    """All but the report and the figures, which come with what else is known by then."""
     times = np.array([scan.time for scan in recording.scans])
     trail = recording.odometry or _trail(recording)
     (folder / MAP).write_text(room_text(merged.room, merged.estimate.landmarks), encoding="utf-8")
     (folder / TRAJECTORY).write_text(tum_text(times, merged.estimate.poses), encoding="utf-8")
     (folder / ODOMETRY).write_text(tum_text(trail.times, trail.poses), encoding="utf-8")
+    (folder / GRAPH).write_text(g2o_text(merged.estimate), encoding="utf-8")
     (folder / SETTINGS).write_text(toml_file.dumps(settings), encoding="utf-8")
 
 

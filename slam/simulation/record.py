@@ -16,15 +16,10 @@ from frontend.sensors.sonar import SONAR, sonar_ranges
 from frontend.sensors.surfaces import Surfaces
 from frontend.sensors.time_of_flight import TIME_OF_FLIGHT, time_of_flight_ranges
 from frontend.sensors.transducer import Transducer
-from slam.simulation.recording_files import (
-    FACTS,
-    readings_csv,
-    readings_name,
-    recording_toml,
-    truth_geojson,
-    write_recording,
-)
+from slam.readers.recording import OdometryNoise
+from slam.recording_files import FACTS, readings_csv, readings_name, recording_toml, write_recording
 from slam.simulation.trajectory import WheelNoise, in_first_frame, true_poses, wheel_odometry
+from slam.simulation.truth import truth_geojson
 from slam.simulation.world import Drive, World, read_plan
 from slam.trajectory_file import read_trajectory, tum_text
 
@@ -102,7 +97,7 @@ def simulate(plan: Path, recipe: Recipe, out: Path, poses: Path | None = None) -
     """Drive through a plan file and write what the sensor read to the folder `out`.
 
     poses: a file of `time x y z qx qy qz qw` lines, true poses in the plan's frame; without it the plan's own drive.
-    Raises SimulationError, PlanError, TrajectoryFileError or RecordingPlaceError.
+    Raises SimulationError, PlanError, TrajectoryFileError or OutputError.
     """
     world = read_plan(plan)
     if poses is not None:
@@ -117,8 +112,11 @@ def simulate(plan: Path, recipe: Recipe, out: Path, poses: Path | None = None) -
     )
     if poses is not None:
         command += f" --poses {poses.as_posix()}"
+    wheels = recipe.wheel_noise(world.drive)
+    noise = OdometryNoise(wheels.distance, wheels.turn, wheels.turn_per_metre)
+    about = {"name": world.name, "description": world.description, "command": command}
     files = {
-        FACTS: recording_toml(world, command, recipe.wheel_noise(world.drive), scans),
+        FACTS: recording_toml(about, noise, scans),
         readings_name(len(scans)): readings_csv(scans),
         "truth.geojson": truth_geojson(world, stood[0]),
         "true.tum": tum_text(np.array([scan.time for scan in scans]), in_first_frame(stood)).encode(),

@@ -1,26 +1,15 @@
 import gzip
-import json
 import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
-import shapely
-from shapely.geometry import shape
 
-from frontend.rigid_motion import transform
 from frontend.scan import Scan
 from frontend.sensors.sonar import SONAR
-from slam.simulation.plans import PLANS
-from slam.simulation.recording_files import (
-    RecordingPlaceError,
-    readings_csv,
-    recording_toml,
-    truth_geojson,
-    write_recording,
-)
-from slam.simulation.trajectory import WheelNoise
-from slam.simulation.world import build_world
+from slam.readers.recording import OdometryNoise
+from slam.recording_files import readings_csv, recording_toml, write_recording
+from slam.whole_output import OutputError
 
 SCAN = Scan(
     bearings=np.radians([-90.0, 0.0, 90.0]),
@@ -46,29 +35,14 @@ def test_a_long_recording_is_compressed_and_says_the_same() -> None:
 
 
 def test_the_facts_are_in_metres_and_degrees() -> None:
-    world = build_world(PLANS["flynn_basement"]())
-    facts = tomllib.loads(recording_toml(world, 'roomsketch "quoted"', WheelNoise(), [SCAN]).decode())
+    about = {"name": "flynn_basement", "description": "", "command": 'roomsketch "quoted"'}
+    facts = tomllib.loads(recording_toml(about, OdometryNoise(0.05, 0.05, 0.02), [SCAN]).decode())
     assert facts["name"] == "flynn_basement"
     assert facts["command"] == 'roomsketch "quoted"'
     assert facts["readings"] == "readings.csv"
     assert facts["sensor"]["half_beam_degrees"] == pytest.approx(np.degrees(SONAR.half_beam))
     assert facts["sensor"]["infrared_range"] == pytest.approx(3.048)
     assert facts["odometry"] == {"distance_noise": 0.05, "turn_noise": 0.05, "turn_per_metre_noise": 0.02}
-
-
-def test_the_truth_is_the_plan_seen_from_the_first_pose() -> None:
-    world = build_world(PLANS["flynn_basement"]())
-    first = np.array([2.0, 1.0, 0.7])
-    features = json.loads(truth_geojson(world, first))["features"]
-    free = shape(features[0]["geometry"])
-    back = shapely.transform(free, lambda points: transform(points, first))
-    assert back.symmetric_difference(world.free).area < 0.01
-    kinds = [part["properties"]["kind"] for part in features]
-    assert kinds.count("free") == 1
-    assert kinds.count("obstacle") == 3
-    assert [part["properties"]["name"] for part in features if part["properties"]["kind"] == "door"] == [
-        "left door", "front door", "right door",
-    ]  # fmt: skip
 
 
 def test_a_recording_replaces_an_older_one_and_nothing_else(tmp_path: Path) -> None:
@@ -80,7 +54,7 @@ def test_a_recording_replaces_an_older_one_and_nothing_else(tmp_path: Path) -> N
     precious = tmp_path / "precious"
     precious.mkdir()
     (precious / "thesis.tex").write_text("")
-    with pytest.raises(RecordingPlaceError, match=r"precious exists and is no recording"):
+    with pytest.raises(OutputError, match=r"precious holds other files and no recording.toml"):
         write_recording(precious, {"recording.toml": b""})
     assert sorted(path.name for path in tmp_path.iterdir()) == ["precious", "recording"]
 
