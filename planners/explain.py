@@ -29,7 +29,8 @@ def narrowest(world: World, start: Floats, goal: Floats) -> tuple[float, Floats]
         middle = (low + high) / 2
         joined = _part_of(world, middle, ends[0], ends[1]) is not None
         low, high = (middle, high) if joined else (low, middle)
-    there, back = (_part_of(world, high, each, each) for each in ends)
+    # A part as small as a point vanishes while it is eroded: then it is the end itself.
+    there, back = (_part_of(world, high, each, each) or each for each in ends)
     line = shapely.shortest_line(there, back)
     return 2 * low, shapely.get_coordinates(line).mean(axis=0)
 
@@ -76,6 +77,8 @@ def largest_scale(answers: Callable[[float], Kind], low: float, steps: int) -> f
 def gap_sentence(gap: Gap) -> str:
     """The gap in words: where, how wide, and what is needed."""
     one, two = (f"({x:.2f}, {y:.2f})" for x, y in gap.edges.mean(axis=1))
+    if gap.width == 0:
+        return f"walls part them altogether, such as those at {one} and {two}; needed are {gap.needed:.4g} m"
     return (
         f"between the walls at {one} and {two} the widest way is {gap.width:.4g} m wide; needed are {gap.needed:.4g} m"
     )

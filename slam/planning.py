@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import shapely
-from shapely import MultiPolygon
+from shapely import MultiPolygon, Polygon
 
 from frontend.scan import Floats
 from planners import configuration_space, generalized_cones
@@ -25,6 +25,7 @@ class PlanningSettings:
     cones: ConesSettings = field(default_factory=ConesSettings)
     configuration_space: ConfigurationSpaceSettings = field(default_factory=ConfigurationSpaceSettings)
     tour_robot: str = "disc:0.15"  # who goes from the first pose to the map's end; larger fits through fewer doors
+    tour_room: float = 1.0  # radii of that robot left around it at the end; larger stops farther from the walls
 
 
 Planner = Callable[[World, Robot, Floats, Floats, PlanningSettings], Answer]
@@ -40,7 +41,7 @@ PLANNERS: dict[str, Planner] = {
 
 
 def tour(safety: MultiPolygon, start: Floats, settings: PlanningSettings) -> dict[str, Answer]:
-    """Each planner's way from `start` (3,) to the farthest place of the same part of the map, headings free.
+    """Each planner's way from `start` (3,) to the far end of the same part of the map, headings free.
 
     Raises PlanningError where the robot cannot stand at the start.
     """
@@ -52,10 +53,16 @@ def tour(safety: MultiPolygon, start: Floats, settings: PlanningSettings) -> dic
         raise PlanningError(
             f"a robot {settings.tour_robot} cannot stand at the first pose ({start[0]:g}, {start[1]:g})"
         )
-    corners = shapely.get_coordinates(around[0])
-    goal = corners[np.argmax(np.linalg.norm(corners - start[:2], axis=1))]
+    goal = _far_end(around[0], settings.tour_room * robot.reach, start)
     begin, end, world = np.array([*start[:2], np.nan]), np.array([*goal, np.nan]), World.from_free_space(safety)
     return {name: planner(world, robot, begin, end, settings) for name, planner in PLANNERS.items()}
+
+
+def _far_end(around: Polygon, room: float, start: Floats) -> Floats:
+    """The place (2,) farthest from `start` with `room` metres between it and the end of `around`, if any has it."""
+    roomy = around.buffer(-room)
+    corners = shapely.get_coordinates(around if roomy.is_empty else roomy)
+    return np.asarray(corners[np.argmax(np.linalg.norm(corners - start[:2], axis=1))])
 
 
 def tour_or_reason(

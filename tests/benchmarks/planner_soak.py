@@ -34,10 +34,10 @@ class Soak:
     queries: Counter[str] = field(default_factory=Counter)
 
 
-def soak(worlds: int, each: int) -> Soak:
-    """`each` queries in every one of `worlds` random worlds."""
+def soak(worlds: int, each: int, first: int = 0) -> Soak:
+    """`each` queries in every one of `worlds` random worlds, seeded from `first` on."""
     counts = Soak()
-    for seed in range(worlds):
+    for seed in range(first, first + worlds):
         rng = np.random.default_rng(seed)
         world = random_world(rng)
         for _ in range(each):

@@ -11,6 +11,7 @@ from planners.configuration_space import ConfigurationSpaceSettings, plan, prepa
 from planners.path import PlanningError
 from planners.robot import Robot
 from planners.world import World
+from tests.planners.flood_fill import refutations
 from tests.planners.known_worlds import CRITICAL_CORNER, LONG, corner, corner_query, door, shared_worlds, world_of
 from tests.planners.random_worlds import random_pose, random_robot, random_world
 
@@ -133,3 +134,8 @@ def test_rotated_rectangles_of_the_shared_worlds_are_solved_close_to_the_best_kn
         assert answer.path is not None
         assert answer.path.length < 1.05 * asked["best_known_length"]
         assert certify(answer.path.poses, robot, world.free)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_no_proof_is_refuted_by_flooding_a_fine_grid(seed: int) -> None:
+    assert refutations(np.random.default_rng(seed), queries=4, step=1.0)["refuted"] == 0

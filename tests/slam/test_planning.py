@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from shapely import MultiPolygon, Polygon
+from shapely import MultiPolygon, Point, Polygon
 
 from planners.path import Answer, Path, PlanningError
 from slam.planning import PLANNERS, PlanningSettings, answer_values, parse_pose, paths_text, tour, tour_or_reason
@@ -19,7 +19,8 @@ def test_the_tour_goes_to_the_far_end_of_the_map() -> None:
     for answer in answers.values():
         assert answer.path is not None
         assert np.allclose(answer.path.poses[0, :2], START[:2])
-        assert np.allclose(answer.path.poses[-1, :2], [6, 4], atol=0.3)
+        assert np.allclose(answer.path.poses[-1, :2], [6, 4], atol=0.4)
+        assert ROOM.boundary.distance(Point(answer.path.poses[-1, :2])) > 0.3, "twice the radius of the tour's robot"
         assert answer.path.length > 5.5
 
 
