@@ -5,10 +5,11 @@ from typing import Annotated
 
 import typer
 
+from planners.compiled import compiling
 from slam import figures, toml_file
 from slam.checkpoint import CheckpointError, Keeper, resumed
 from slam.commands.console import err, out, print_values, progress
-from slam.commands.plan import told
+from slam.commands.plan import announce_compiling, told
 from slam.logbook import Logbook
 from slam.pipeline import Merged, merge_scans
 from slam.planning import tour_or_reason
@@ -38,7 +39,8 @@ def merge(
     opinions = knowing(opinions, drive.odometry_noise)
     keeper = _keeper(_checkpoint_of(to), every, drive, opinions)
     merged = _kept(drive, opinions, keeper)
-    paths, trouble = tour_or_reason(merged.room.safety, merged.estimate.poses[0], opinions.planning)
+    with compiling(announce_compiling):
+        paths, trouble = tour_or_reason(merged.room.safety, merged.estimate.poses[0], opinions.planning)
     report = report_of(merged, drive, Source(recording, format_name), paths) | {"tour": trouble}
     found = {name: answer.path.poses for name, answer in paths.items() if answer.path is not None}
     story = Story(merged.percepts, merged.estimate.poses, merged.room, merged.estimate.landmarks, found)
