@@ -20,7 +20,7 @@ class Decision:
 
 @dataclass(frozen=True, eq=False)
 class Tie:
-    """`moving` was found at `pose` (3,) in the frame of `fixed`, both keyframe numbers; information (3, 3) in moving's axes."""
+    """Keyframe `moving` was found at `pose` (3,) in the frame of `fixed`; information (3, 3) in the moving one's axes."""
 
     fixed: int
     moving: int
@@ -43,7 +43,8 @@ class Estimate:
     """poses (n, 3) in the frame of the first, covariances (n, 3, 3) in each pose's own axes, landmarks (l, 2),
     sightings (l,) of each landmark, keyframes (k,) scan indices that carry the graph, decisions in their order,
     calibration: the robot's constants as learnt from the log. ties, landmark_ties: the factors of the graph, between
-    places in `keyframes` and in `landmarks`.
+    places in `keyframes` and in `landmarks`. mapped (n,): whether the scan stands in the map; the others fitted
+    nowhere, or belong to sessions that were joined to no other and have frames of their own.
     """
 
     poses: Floats
@@ -53,5 +54,6 @@ class Estimate:
     keyframes: NDArray[np.int64]
     decisions: tuple[Decision, ...]
     calibration: dict[str, float]
+    mapped: NDArray[np.bool_]
     ties: tuple[Tie, ...] = ()
     landmark_ties: tuple[LandmarkTie, ...] = ()

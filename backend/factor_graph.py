@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import gtsam
 import numpy as np
-from gtsam.symbol_shorthand import L, X
+from gtsam.symbol_shorthand import L, W, X
 from numpy.typing import NDArray
 
 from backend.estimate import LandmarkTie, Tie
@@ -43,15 +43,23 @@ class FactorGraph:
         self._fresh = gtsam.Values()  # values it does not
         self._loops: list[tuple[int, int, gtsam.Pose2, Floats]] = []
         self._poses: list[int] = []
+        self._anchors: dict[int, int] = {}  # pose, and the place of its factor
         self.landmark_indices: list[int] = []
+        self._walls: list[int] = []
         self.ties: list[Tie] = []
         self._sightings: list[tuple[int, int, Floats, Floats]] = []
 
     @property
     def poses(self) -> Floats:
         """(n, 3) current estimates, in the order they were added."""
-        sorted_by_index = gtsam.utilities.extractPose2(self._values).reshape(-1, 3)
-        return np.asarray(sorted_by_index[_ranks(self._poses)])
+        walls_first = gtsam.utilities.extractPose2(self._values).reshape(-1, 3)
+        return np.asarray(walls_first[len(self._walls) :][_ranks(self._poses)])
+
+    @property
+    def walls(self) -> Floats:
+        """(w, 3) current frames of the walls, in the order they were added."""
+        walls_first = gtsam.utilities.extractPose2(self._values).reshape(-1, 3)
+        return np.asarray(walls_first[: len(self._walls)][_ranks(self._walls)])
 
     @property
     def landmarks(self) -> Floats:
@@ -73,6 +81,7 @@ class FactorGraph:
     def anchor(self, index: int, pose: Floats, covariance: Floats) -> None:
         """A pose is known from outside: the first one, or the start of a session."""
         self._check_pose(index)
+        self._anchors[index] = self._graph.size()
         self._graph.add(gtsam.PriorFactorPose2(X(index), gtsam.Pose2(*pose), _noise(covariance)))
 
     def add_motion(self, fixed: int, moving: int, pose: Floats, covariance: Floats) -> None:
@@ -111,6 +120,33 @@ class FactorGraph:
         self._graph.add(gtsam.BearingRangeFactor2D(X(pose), L(landmark), bearing, distance, noise))
         self._sightings.append((pose, landmark, position, _information(covariance)))
 
+    def add_wall(self, index: int, frame: Floats) -> None:
+        """A new wall at its first guess: a frame (3,) that lies on it, heads into it, and may slide along it."""
+        self._insert(W(index), gtsam.Pose2(*frame))
+        self._walls.append(index)
+        # Nothing ties the frame's place along the wall, so it stays where it is.
+        self._graph.add(gtsam.PriorFactorPose2(W(index), gtsam.Pose2(*frame), _noise(np.diag([1e6, 1.0, 1e6]))))
+
+    def add_wall_sighting(self, pose: int, wall: int, frame: Floats, covariance: Floats) -> None:
+        """The wall's frame was seen at `frame` (3,) in the frame of `pose`, covariance (3, 3) in the wall's axes."""
+        self._check_pose(pose)
+        huber = gtsam.noiseModel.mEstimator.Huber.Create(self.settings.landmark_width)
+        noise = gtsam.noiseModel.Robust.Create(huber, _noise(covariance))
+        self._graph.add(gtsam.BetweenFactorPose2(X(pose), W(wall), gtsam.Pose2(*frame), noise))
+
+    def belief(self, pose: int, walls: list[int], landmarks: list[int]) -> tuple[Floats, Floats]:
+        """Mean (d,) and joint covariance (d, d) of a pose, walls (3 each) and landmarks (2 each), in the room's axes."""
+        frames = [self._values.atPose2(key) for key in (X(pose), *map(W, walls))]
+        points = [self._values.atPoint2(L(index)) for index in landmarks]
+        keys = [X(pose), *map(W, walls), *map(L, landmarks)]
+        own = gtsam.Marginals(self._graph, self._values).jointMarginalCovariance(keys)
+        joint = np.block([[own.at(first, second) for second in keys] for first in keys])
+        turns = np.eye(len(joint))
+        for k, frame in enumerate(frames):
+            turns[3 * k : 3 * k + 2, 3 * k : 3 * k + 2] = frame.rotation().matrix()
+        mean = [value for frame in frames for value in (frame.x(), frame.y(), frame.theta())]
+        return np.array([*mean, *np.array(points).ravel()]), np.asarray(turns @ joint @ turns.T)
+
     def mend(self) -> None:
         """Let the incremental solver (ISAM2) take in what is new."""
         graph = gtsam.NonlinearFactorGraph()
@@ -122,12 +158,35 @@ class FactorGraph:
         self._values = self._tree.calculateEstimate()
 
     def solve(self) -> None:
-        """Levenberg–Marquardt from the current estimates; loops keep their robust kernel."""
+        """Levenberg–Marquardt from the current estimates, where the incremental solver starts again."""
         parameters = gtsam.LevenbergMarquardtParams()
         parameters.setMaxIterations(self.settings.iterations)
         parameters.setRelativeErrorTol(self.settings.settled)
         parameters.setlambdaInitial(1e-6)
         self._values = gtsam.LevenbergMarquardtOptimizer(self._graph, self._values, parameters).optimize()
+        self._tree, self._taken, self._fresh = gtsam.ISAM2(_tree_parameters()), 0, gtsam.Values(self._values)
+
+    def carry(self, poses: dict[int, Floats], freed: int) -> None:
+        """Poses (3,) are believed elsewhere, landmarks first seen from them go along, and `freed` loses its anchor.
+
+        What then ties them must be added, and all solved.
+        """
+        moved = {index: gtsam.Pose2(*pose) for index, pose in poses.items()}
+        first: dict[int, int] = {}
+        for pose, landmark, *_ in self._sightings:
+            first.setdefault(landmark, pose)
+        for landmark, pose in first.items():
+            if pose in moved:
+                seen = self._values.atPose2(X(pose)).transformTo(self._values.atPoint2(L(landmark)))
+                self._values.update(L(landmark), moved[pose].transformFrom(seen))
+        for index, there in moved.items():
+            self._values.update(X(index), there)
+        gone, kept = self._anchors.pop(freed), gtsam.NonlinearFactorGraph()
+        for k in range(self._graph.size()):
+            if k != gone:
+                kept.add(self._graph.at(k))
+        self._graph = kept
+        self._anchors = {index: place - (place > gone) for index, place in self._anchors.items()}
 
     def solved(self) -> "FactorGraph":
         """The same factors with everything at its best; this graph keeps the estimates it has."""

@@ -6,6 +6,7 @@ that is being registered sits before and beside the centre of turning. A registe
 the gate is a slip (or a wrong registration): it teaches nothing and is reported.
 """
 
+from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +28,12 @@ class OdometrySettings:
     scale_doubt: float = 0.1  # how wrong the scales may be before anything is learnt; larger learns faster
     bias_doubt: float = 0.1  # the same for the unnoticed turn, radians per metre
     mount_doubt: float = 0.1  # the same for the sensor's place on the robot, metres
+    gap_seconds: float = 5.0  # without a scan that are a gap; larger believes the wheels over longer pauses
+    gap_intervals: float = 10.0  # usual intervals that are a gap, if that is longer; larger does the same
+    fastest: float = 5.0  # metres per second that wheels may claim; larger believes wilder claims
+    lost_metres: float = 0.5  # doubt added to a move that no wheels tell; larger relies on registration alone
+    lost_radians: float = 0.3
+    slips: int = 3  # in a row until the wheels are no longer asked; larger asks broken wheels longer
     slip_gate: float = 16.3  # squared Mahalanobis distance (χ², 3 degrees of freedom, 0.1 %); larger calls less a slip
 
 
@@ -47,6 +54,9 @@ class Odometry:
         self._filter.x = np.array([[1.0], [1.0], [0.0], [0.0], [0.0]])
         doubts = [settings.scale_doubt, settings.scale_doubt, settings.bias_doubt]
         self._filter.P = np.diag([*doubts, settings.mount_doubt, settings.mount_doubt]) ** 2
+        self._intervals: deque[float] = deque(maxlen=100)
+        self._slips = 0  # in a row
+        self._speed = np.zeros(3)  # of the last registered move, per second
 
     @property
     def calibration(self) -> Floats:
@@ -63,13 +73,39 @@ class Odometry:
         pose, jacobian = self._moved(wheels)
         return Move(pose, self._noise(wheels) + jacobian @ self._filter.P @ jacobian.T)
 
-    def learn(self, wheels: Floats, registered: Move) -> float:
-        """Take in a registered move; the squared Mahalanobis distance, over `slip_gate` when it taught nothing."""
+    def expect(self, wheels: Floats, seconds: float) -> tuple[Move, str | None]:
+        """The move to expect in so many seconds, and why the wheels cannot be taken at their word, if so."""
+        usual = float(np.median(self._intervals)) if self._intervals else np.inf
+        self._intervals.append(seconds)
+        way, settings = float(np.hypot(wheels[0], wheels[1])), self.settings
+        if way > settings.fastest * max(seconds, 0.0) + settings.lost_metres:
+            return Move(np.zeros(3), self._lost), f"the wheels claim {way:.1f} m in {seconds:.2f} s"
+        expected = self.predict(wheels)
+        if seconds > max(settings.gap_seconds, settings.gap_intervals * usual):
+            doubted = Move(expected.pose, expected.covariance + self._lost)
+            return doubted, f"{seconds:.1f} s without a scan, usually {usual:.2f} s"
+        return (self.steady(seconds) if self._slips >= settings.slips else expected), None
+
+    def steady(self, seconds: float) -> Move:
+        """The move to expect without wheels: on as before."""
+        return Move(np.asarray(self._speed * max(seconds, 0.0)), self._lost)
+
+    @property
+    def _lost(self) -> Floats:
+        return np.diag([self.settings.lost_metres, self.settings.lost_metres, self.settings.lost_radians]) ** 2
+
+    def learn(self, wheels: Floats, registered: Move, seconds: float = np.inf) -> float:
+        """Take in a registered move in so many seconds; the squared Mahalanobis distance from what the wheels claim.
+
+        Over `slip_gate` it taught nothing of the wheels.
+        """
         predicted, jacobian = self._moved(wheels)
         residual = registered.pose - predicted
         residual[2] = np.arctan2(np.sin(residual[2]), np.cos(residual[2]))
         noise = self._noise(wheels) + registered.covariance
         distance = float(residual @ np.linalg.solve(jacobian @ self._filter.P @ jacobian.T + noise, residual))
+        self._speed = registered.pose / max(seconds, 1e-3)
+        self._slips = 0 if distance <= self.settings.slip_gate else self._slips + 1
         if distance <= self.settings.slip_gate:
             measured = residual[:, None] + jacobian @ self._filter.x
             self._filter.update(measured, R=noise, H=jacobian)

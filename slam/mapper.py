@@ -1,6 +1,7 @@
 """The mapper: scans go in one by one, poses come out at once; the graph of keyframes is mended when a loop closes."""
 
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import pairwise
 from time import perf_counter
 
@@ -15,10 +16,13 @@ from backend.odometry import Move, Odometry, OdometrySettings
 from frontend.local_map import Faces
 from frontend.registration import Alignment
 from frontend.rigid_motion import between, compose
-from frontend.scan import Floats, Scan
+from frontend.scan import Floats, Integers, Scan
+from slam.keyframes import Keyframe, around
 from slam.logbook import Logbook
 from slam.loops import Tried, VerificationSettings, close_loop
 from slam.perception import FrontendSettings, Percept, perceive
+from slam.relocalisation import RelocalisationSettings, relocalise
+from slam.sessions import Recognition, Sessions
 from slam.tracking import Placed, TrackingSettings, track, turned
 
 
@@ -30,6 +34,7 @@ class MapperSettings:
     tracking: TrackingSettings = field(default_factory=TrackingSettings)
     loops: LoopSettings = field(default_factory=LoopSettings)
     verification: VerificationSettings = field(default_factory=VerificationSettings)
+    relocalisation: RelocalisationSettings = field(default_factory=RelocalisationSettings)
     landmarks: LandmarkSettings = field(default_factory=LandmarkSettings)
     graph: GraphSettings = field(default_factory=GraphSettings)
     refinement: RefinementSettings = field(default_factory=RefinementSettings)
@@ -39,22 +44,7 @@ class MapperSettings:
     mend_radians: float = 0.01
     loop_metres: float = 0.5  # way between two searches for loops; larger searches less often
     loop_radians: float = 0.5  # turn between two searches for loops; larger searches less often
-
-
-class _Keyframe:
-    """A scan that carries the graph: its place among the scans, and its faces in the room as now believed."""
-
-    def __init__(self, scan: int, percept: Percept, pose: Floats) -> None:
-        self.scan, self.percept, self.pose = scan, percept, pose
-        self.slipped = False  # whether the wheels disagreed on the way here
-        self._placed: tuple[Floats, Faces] | None = None
-
-    @property
-    def faces(self) -> Faces:
-        """Placed only when somebody looks: a mended graph moves every keyframe, but few are looked at again."""
-        if self._placed is None or self._placed[0] is not self.pose:
-            self._placed = (self.pose, Faces.placed(self.percept.surface, self.pose))
-        return self._placed[1]
+    patience: int = 3  # scans in a row that fit nowhere before the robot is lost; larger waits for people to pass
 
 
 class Mapper:
@@ -65,33 +55,52 @@ class Mapper:
         self.logbook = logbook or Logbook()
         self.percepts: list[Percept] = []
         self.timings = {"front end": 0.0, "tracking": 0.0, "loops": 0.0, "graph": 0.0}
-        self._odometry = Odometry(settings.odometry)
+        self._odometries: list[Odometry] = []  # one per session
+        self._sessions = Sessions()
+        self._cause: str | None = "the first scan"  # why the next scan begins a session
+        self._astray: list[int] = []  # the newest scans, if they fit nowhere
+        self._unmapped: set[int] = set()
         self._graph = FactorGraph(settings.graph)
         self._landmarks = LandmarkMap(settings.landmarks)
         self._drift = Drift()
-        self._keyframes: list[_Keyframe] = []
+        self._keyframes: list[Keyframe] = []
         self._relative: list[tuple[int, Floats]] = []  # keyframe and pose in its frame, one per scan
         self._decisions: list[Decision] = []
         self._slipped = False  # whether the wheels disagreed since the last keyframe
         self._way = np.zeros(2)  # metres and radians since loops were last searched
+        self._vain = 0  # searches for another session's places since one was found, and how many to leave out
+        self._pause = 0
+
+    def begin_session(self, cause: str) -> None:
+        """The next scan was taken nobody knows where, perhaps by another robot: it gets a frame of its own."""
+        self._cause = cause
+        self._astray.clear()
+        self._odometries.append(Odometry(self.settings.odometry))
 
     def add(self, scan: Scan) -> Floats:
-        """Take in the next scan; its pose (3,) in the frame of the first, as now believed."""
+        """Take in the next scan; its pose (3,) in the frame of its session's first, as now believed."""
         clock = perf_counter()
-        percept = perceive(scan, self.frontend)
-        clock = self._tick("front end", clock)
-        self.percepts.append(percept)
-        if not self._keyframes:
-            self._start(percept)
-            return np.zeros(3)
-        placed = self._track(percept)
+        self.percepts.append(perceive(scan, self.frontend))
+        self._tick("front end", clock)
+        pose = self._take(len(self.percepts) - 1)
+        return self._sessions.told(pose, self._sessions.newest)
+
+    def _take(self, index: int) -> Floats:
+        """Place a scan that was perceived; its pose (3,)."""
+        clock = perf_counter()
+        if self._cause is not None:
+            return self._start(index)
+        placed, gap = self._track(index)
+        if placed.astray is not None:
+            return self._wander(index, placed, gap)
+        self._astray.clear()
         keyframe = self._keyframes[-1]
         step = between(keyframe.pose, placed.pose)
         clock = self._tick("tracking", clock)
         if np.hypot(*step[:2]) < self.settings.keyframe_metres and abs(step[2]) < self.settings.keyframe_radians:
             self._relative.append((len(self._keyframes) - 1, step))
             return placed.pose
-        self._add_keyframe(percept, placed, step)
+        self._add_keyframe(index, placed, step)
         clock = self._tick("graph", clock)
         surprise = self._close_loops()
         clock = self._tick("loops", clock)
@@ -104,7 +113,11 @@ class Mapper:
     @property
     def poses(self) -> Floats:
         """(n, 3) where all scans so far were taken, as now believed; nothing is solved for it."""
-        return np.array([compose(self._keyframes[k].pose, step) for k, step in self._relative]).reshape(-1, 3)
+        told = [
+            self._sessions.told(compose(self._keyframes[k].pose, step), self._keyframes[k].session)
+            for k, step in self._relative
+        ]
+        return np.array(told).reshape(-1, 3)
 
     def _settle(self) -> None:
         """Move keyframes and landmarks to where the graph now puts them."""
@@ -120,24 +133,44 @@ class Mapper:
         covariances = graph.covariances()
         poses = self._refined(graph.poses)
         self._tick("graph", clock)
-        scale, turn_scale, turn_per_metre, forward, left = self._odometry.calibration
+        main, owners = self._main_root(), np.array([k for k, _ in self._relative], np.int64)
+        roots = np.array([self._sessions.root(keyframe.session) for keyframe in self._keyframes], np.int64)
+        told = [self._sessions.told(compose(poses[k], step), self._keyframes[k].session) for k, step in self._relative]
+        mapped = roots[owners] == main
+        mapped[sorted(self._unmapped)] = False
         return Estimate(
-            poses=np.array([compose(poses[k], step) for k, step in self._relative]).reshape(-1, 3),
-            covariances=covariances[np.array([k for k, _ in self._relative], np.int64)],
+            poses=np.array(told).reshape(-1, 3),
+            covariances=covariances[owners],
             landmarks=graph.landmarks,
             sightings=self._landmarks.counts[graph.landmark_indices],
             keyframes=np.array([keyframe.scan for keyframe in self._keyframes]),
-            decisions=(*self._decisions, *self._doubted(graph)),
-            calibration={
-                "metres per metre": float(scale),
-                "radians per radian": float(turn_scale),
-                "radians per metre": float(turn_per_metre),
-                "sensor forward": float(forward),
-                "sensor left": float(left),
-            },
+            decisions=(*self._decisions, *self._doubted(graph), *self._left_out(roots[owners], main)),
+            calibration=self._calibration(),
+            mapped=mapped,
             ties=tuple(graph.ties),
             landmark_ties=tuple(graph.landmark_ties),
         )
+
+    def _calibration(self) -> dict[str, float]:
+        """The constants of the newest session's wheels."""
+        odometry = self._odometries[-1] if self._odometries else Odometry(self.settings.odometry)
+        names = ("metres per metre", "radians per radian", "radians per metre", "sensor forward", "sensor left")
+        return dict(zip(names, map(float, odometry.calibration), strict=True))
+
+    def _main_root(self) -> int:
+        """Of the frames that were not joined, the one with the most scans: the map is made in it."""
+        roots = [self._sessions.root(self._keyframes[k].session) for k, _ in self._relative]
+        return max(sorted(set(roots)), key=roots.count, default=0)
+
+    def _left_out(self, roots: Integers, main: int) -> list[Decision]:
+        """One decision for each frame that was never joined to the map's."""
+        return [
+            Decision("session", tuple(map(int, np.flatnonzero(roots == root))), accepted=False, reason=reason)
+            for root in sorted(set(roots.tolist()) - {main})
+            for reason in [
+                f"none of its {np.sum(roots == root)} scans was recognised in the map: they are left out of it"
+            ]
+        ]
 
     def _refined(self, poses: Floats) -> Floats:
         """Poses (k, 3) of the keyframes after all faces and the wheels were solved together."""
@@ -160,52 +193,95 @@ class Mapper:
         chain = Chain(np.array(moves), np.array([move.covariance for move in driven]))
         return refine(poses, sheaf, chain, self.settings.refinement)
 
-    def _driven(self, old: _Keyframe, new: _Keyframe) -> Move:
+    def _driven(self, old: Keyframe, new: Keyframe) -> Move:
         """What the wheels say of the way between two keyframes, covariance in the axes of the new one."""
-        move = self._odometry.predict(between(old.percept.scan.odometry, new.percept.scan.odometry))
+        if old.session != new.session:
+            return Move(between(old.pose, new.pose), 1e6 * np.eye(3))
+        wheels = between(old.percept.scan.odometry, new.percept.scan.odometry)
+        move = self._odometries[new.session].predict(wheels)
         return Move(move.pose, turned(move.covariance, -move.pose[2]))
 
-    def _start(self, percept: Percept) -> None:
-        pose = np.zeros(3)
-        self._graph.add_pose(0, pose)
-        self._graph.anchor(0, pose, np.diag([1e-3, 1e-3, 1e-4]) ** 2)
-        self._keyframes.append(_Keyframe(0, percept, pose))
-        self._relative.append((0, pose))
-        self._see_landmarks(percept, pose)
+    def _start(self, index: int) -> Floats:
+        """A session begins with this scan."""
+        number, pose = len(self._keyframes), self._sessions.begin()
+        if len(self._odometries) <= self._sessions.newest:
+            self._odometries += self._odometries[-1:] or [Odometry(self.settings.odometry)]
+        if number:
+            self._decisions.append(
+                Decision("place", (index,), accepted=False, reason=f"a session begins: {self._cause}")
+            )
+        self._cause, self._slipped, self._vain, self._pause = None, False, 0, 0
+        self._graph.add_pose(number, pose)
+        self._graph.anchor(number, pose, np.diag([1e-3, 1e-3, 1e-4]) ** 2)
+        self._keyframes.append(Keyframe(index, self._sessions.newest, self.percepts[index], pose))
+        self._relative.append((number, np.zeros(3)))
+        self._see_landmarks(self.percepts[index], pose)
+        return pose
 
-    def _track(self, percept: Percept) -> Placed:
-        """Place the newest scan and let the odometry learn from it."""
-        index = len(self.percepts) - 1
-        wheels = between(self.percepts[-2].scan.odometry, percept.scan.odometry)
+    def _track(self, index: int) -> tuple[Placed, str | None]:
+        """Place a scan after the one before it, and let the odometry learn from it; and why the wheels are no guide."""
+        percept, before = self.percepts[index], self.percepts[index - 1]
+        wheels = between(before.scan.odometry, percept.scan.odometry)
         keyframe, step = self._relative[-1]
         last = compose(self._keyframes[keyframe].pose, step)
-        move = self._odometry.predict(wheels)
+        odometry = self._odometries[self._sessions.newest]
+        seconds = percept.scan.time - before.scan.time
+        move, gap = odometry.expect(wheels, seconds)
         placed = self.logbook.answer(lambda: track(percept, last, move, self._recent(), self.settings.tracking))
+        if placed.astray is not None:
+            # It may be the wheels that are wrong.
+            steady = odometry.steady(seconds)
+            again = self.logbook.answer(lambda: track(percept, last, steady, self._recent(), self.settings.tracking))
+            placed = again if again.refused is None and again.matched >= self.settings.tracking.good else placed
+        if gap is not None:
+            self._decisions.append(Decision("gap", (index - 1, index), accepted=placed.refused is None, reason=gap))
+            self._slipped = True
         if placed.refused is not None:
             self._decisions.append(Decision("registration", (index,), accepted=False, reason=placed.refused))
-            return placed
-        moved = between(last, placed.pose)
-        distance = self._odometry.learn(wheels, Move(moved, turned(placed.covariance, moved[2])))
-        if distance > self.settings.odometry.slip_gate:
-            reason = (
-                f"the wheels claim {np.hypot(*wheels[:2]):.2f} m and {np.degrees(wheels[2]):.1f}°, registration says "
-                f"{np.hypot(*moved[:2]):.2f} m and {np.degrees(moved[2]):.1f}°: {np.sqrt(distance):.1f} sigmas"
-            )
-            self._decisions.append(Decision("odometry", (index - 1, index), accepted=False, reason=reason))
-            self._slipped = True
-        return placed
+        elif gap is None:
+            moved = between(last, placed.pose)
+            distance = odometry.learn(wheels, Move(moved, turned(placed.covariance, moved[2])), seconds)
+            if distance > self.settings.odometry.slip_gate:
+                self._slip(index, wheels, moved, distance)
+        return placed, gap
+
+    def _slip(self, index: int, wheels: Floats, moved: Floats, distance: float) -> None:
+        reason = (
+            f"the wheels claim {np.hypot(*wheels[:2]):.2f} m and {np.degrees(wheels[2]):.1f}°, registration says "
+            f"{np.hypot(*moved[:2]):.2f} m and {np.degrees(moved[2]):.1f}°: {np.sqrt(distance):.1f} sigmas"
+        )
+        self._decisions.append(Decision("odometry", (index - 1, index), accepted=False, reason=reason))
+        self._slipped = True
+
+    def _wander(self, index: int, placed: Placed, gap: str | None) -> Floats:
+        """A scan that fits nowhere waits for the next; when none of them fits, they begin a session together."""
+        keyframe = self._relative[-1][0]
+        self._relative.append((keyframe, between(self._keyframes[keyframe].pose, placed.pose)))
+        self._astray.append(index)
+        self._unmapped.add(index)
+        if gap is None and len(self._astray) < self.settings.patience:
+            return placed.pose
+        astray, self._astray = self._astray, []
+        del self._relative[astray[0] :]
+        self._unmapped.difference_update(astray)
+        self._cause = f"{placed.astray}, {gap or f'{len(astray)} scans in a row'}"
+        return [self._take(number) for number in astray][-1]
 
     def _recent(self) -> list[Faces]:
-        return [keyframe.faces for keyframe in self._keyframes[-self.settings.tracking.recent :]]
+        return [keyframe.faces for keyframe in self._last(self.settings.tracking.recent)]
 
-    def _add_keyframe(self, percept: Percept, placed: Placed, step: Floats) -> None:
-        old, new = self._keyframes[-1], len(self._keyframes)
-        self._keyframes.append(_Keyframe(len(self.percepts) - 1, percept, placed.pose))
+    def _last(self, count: int) -> list[Keyframe]:
+        """The newest keyframes, of this session only."""
+        return around(self._keyframes, len(self._keyframes) - 1, count - 1)
+
+    def _add_keyframe(self, index: int, placed: Placed, step: Floats) -> None:
+        old, new, percept = self._keyframes[-1], len(self._keyframes), self.percepts[index]
+        self._keyframes.append(Keyframe(index, old.session, percept, placed.pose))
         self._graph.add_pose(new, placed.pose)
-        if placed.refused is None:
+        self._keyframes[new].slipped = self._slipped
+        if placed.refused is None or self._slipped:
             self._graph.add_motion(new - 1, new, step, placed.covariance)
-        self._keyframes[new].slipped = self._slipped and placed.refused is None
-        if not self._keyframes[new].slipped:
+        if not self._slipped:
             driven = self._driven(old, self._keyframes[new])
             self._graph.add_motion(new - 1, new, driven.pose, driven.covariance)
         self._slipped = False
@@ -240,7 +316,53 @@ class Mapper:
             surprise |= bool(
                 np.hypot(*apart[:2]) > self.settings.mend_metres or abs(apart[2]) > self.settings.mend_radians
             )
-        return surprise
+        return self._recognise() or surprise
+
+    def _recognise(self) -> bool:
+        """Look for the newest keyframe in the maps of sessions with other frames; whether one of them was joined."""
+        if not self._sessions.apart:
+            return False
+        self._pause -= 1
+        if self._pause >= 0:
+            return False
+        # Whoever was looked for in vain is looked for less and less often.
+        self._vain += 1
+        self._pause = self._vain // 10
+        newest = len(self._keyframes) - 1
+        for root in self._sessions.others(self._keyframes[newest].session):
+            old = [k for k, keyframe in enumerate(self._keyframes) if self._sessions.root(keyframe.session) == root]
+            tried = self.logbook.answer(partial(self._tried_place, old))
+            scans = (self._keyframes[old[tried.fixed]].scan, self._keyframes[newest].scan)
+            if isinstance(tried.found, str):
+                self._decisions.append(Decision("place", scans, accepted=False, reason=tried.found))
+                continue
+            pose = between(self._keyframes[old[tried.fixed]].pose, tried.found.pose_in_fixed)
+            found = Recognition(old[tried.fixed], newest, pose, _covariance(tried.found))
+            earlier = self._sessions.confirm(found, self._keyframes)
+            reason = f"{tried.found.matched:.0%} matched, {'as' if earlier else 'not yet'} said by another view"
+            self._decisions.append(Decision("place", scans, accepted=earlier is not None, reason=reason))
+            if earlier is not None:
+                self._join(earlier, found)
+                return True
+        return False
+
+    def _tried_place(self, old: list[int]) -> Tried:
+        settings, places = self.settings, [self._keyframes[k] for k in old]
+        return relocalise(
+            self._last(settings.verification.beside), places, settings.relocalisation, settings.verification
+        )
+
+    def _join(self, earlier: Recognition, found: Recognition) -> None:
+        """Lay the later of two sessions' maps on the earlier, and tie them by both recognitions."""
+        moved, carry = self._sessions.join(found, self._keyframes)
+        poses = {k: compose(carry, self._keyframes[k].pose) for k in moved}
+        self._graph.carry(poses, freed=moved[0])
+        for one in (earlier, found):
+            self._graph.add_loop(one.fixed, one.moving, one.pose, one.covariance)
+            self._drift.add(one.fixed, one.moving, one.covariance)
+        self._graph.solve()
+        self._settle()
+        self._vain = self._pause = 0
 
     def _tried_loops(self) -> tuple[Tried, ...]:
         poses = np.array([keyframe.pose for keyframe in self._keyframes])
@@ -252,20 +374,15 @@ class Mapper:
         # Its neighbours' surface would be matched, but the loop would tie a pose that nothing holds to them.
         if len(self._keyframes[candidate.pose].percept.surface.points) < self.settings.tracking.least_faces:
             return "the old scan has no surface of its own"
-        around = self._keyframes[max(0, candidate.pose - beside) : candidate.pose + beside + 1]
-        old = Faces.together([keyframe.faces for keyframe in around])
-        recent = Faces.together([keyframe.faces for keyframe in self._keyframes[-beside:]])
+        there = around(self._keyframes, candidate.pose, beside, beside)
+        old = Faces.together([keyframe.faces for keyframe in there])
+        recent = Faces.together([keyframe.faces for keyframe in self._last(beside)])
         window = (candidate.metres, candidate.radians)
         return close_loop(newest.percept, newest.pose, recent, old, window, self.settings.verification)
 
     def _add_loop(self, fixed: int, found: Alignment) -> None:
-        pose = between(self._keyframes[fixed].pose, found.pose_in_fixed)
-        own: Floats = np.asarray(np.linalg.inv(found.information + 1e-9 * np.eye(3)), np.float64)
-        covariance = turned(own, -found.pose_in_fixed[2])
-        # The submap itself is only as good as its own poses: nothing is known better than half a centimetre.
-        covariance = covariance + np.diag([0.005, 0.005, 0.002]) ** 2
-        newest = len(self._keyframes) - 1
-        self._graph.add_loop(fixed, newest, pose, covariance)
+        newest, covariance = len(self._keyframes) - 1, _covariance(found)
+        self._graph.add_loop(fixed, newest, between(self._keyframes[fixed].pose, found.pose_in_fixed), covariance)
         self._drift.add(fixed, newest, covariance)
 
     def _doubted(self, graph: FactorGraph) -> list[Decision]:
@@ -287,3 +404,10 @@ class Mapper:
         now = perf_counter()
         self.timings[stage] += now - since
         return now
+
+
+def _covariance(found: Alignment) -> Floats:
+    """(3, 3) of a pose on an old submap, in its own axes."""
+    own: Floats = np.asarray(np.linalg.inv(found.information + 1e-9 * np.eye(3)), np.float64)
+    # The submap itself is only as good as its own poses: nothing is known better than half a centimetre.
+    return np.asarray(turned(own, -found.pose_in_fixed[2]) + np.diag([0.005, 0.005, 0.002]) ** 2)
