@@ -29,19 +29,24 @@ class TrackingSettings:
     window_metres: float = 0.4  # of the wider search; larger finds worse guesses and mistakes more
     window_radians: float = 0.25
     least_faces: int = 8  # surface points a scan needs to be registered at all
+    astray: float = 0.5  # confirmed share of the visible map under which a scan is of another place; larger doubts more
+    judges: int = 40  # visible faces that this takes; larger doubts less
+    narrow: float = 0.05  # radians of half-beam at most that this takes: a wide beam itself sees past edges
 
 
 @dataclass(frozen=True, eq=False)
 class Placed:
     """Where a scan was put: pose (3,), covariance (3, 3) in its own axes, and why registration was refused, if so.
 
-    matched: what share of the surface found a face, 0 where nothing was registered.
+    matched: what share of the surface found a face, 0 where nothing was registered. astray: why the scan cannot have
+    been taken near here at all, if so.
     """
 
     pose: Floats
     covariance: Floats
     matched: float
     refused: str | None = None
+    astray: str | None = None
 
 
 def turned(covariance: Floats, angle: float) -> Floats:
@@ -77,9 +82,23 @@ def track(percept: Percept, last: Floats, move: Move, recent: list[Faces], setti
             f"only {found.matched:.0%} of {len(percept.surface.points)} surface points lie on the map "
             f"({settings.poor:.0%} needed)"
         )
-        return Placed(guess, by_wheels, found.matched, reason)
+        return Placed(guess, by_wheels, found.matched, reason, _astray(percept, seen, settings))
+    astray = _astray(percept, seen, settings)
+    if astray is not None:
+        return Placed(guess, by_wheels, found.matched, astray, astray)
     covariance: Floats = np.asarray(np.linalg.inv(found.information + prior.information), np.float64)
     return Placed(found.pose_in_fixed, turned(covariance, -found.pose_in_fixed[2]), found.matched)
+
+
+def _astray(percept: Percept, seen: Visibility, settings: TrackingSettings) -> str | None:
+    """What of the map it should have seen, and did not: a scan of another place, not one of new ground."""
+    if percept.scan.sensor.half_beam > settings.narrow or seen.visible < settings.judges:
+        return None
+    if seen.confirmed >= settings.astray:
+        return None
+    return (
+        f"{seen.confirmed:.0%} of {seen.visible} visible faces of the map are confirmed ({settings.astray:.0%} needed)"
+    )
 
 
 def _doubtful(found: Alignment, seen: Visibility, settings: TrackingSettings) -> bool:
