@@ -26,6 +26,7 @@ class ContourKind(IntEnum):
     DOOR_ARC = 3
     SIDE = 4
     REJECTED = 5
+    INFERRED = 6
 
 
 class EdgeKind(IntEnum):
@@ -186,7 +187,8 @@ def _edges_between(fused: FusedScan, ends: Floats, settings: ContourSettings) ->
     )
     measured = kinds == ReadingKind.MEASURED
     edges[continuous & measured & np.roll(measured, -1)] = EdgeKind.REAL
-    edges[(kinds == ReadingKind.NO_RETURN) | (following == ReadingKind.NO_RETURN)] = EdgeKind.NO_RETURN
+    for unmet in (ReadingKind.NO_RETURN, ReadingKind.INFERRED):  # no surface answered from there
+        edges[(kinds == unmet) | (following == unmet)] = EdgeKind.NO_RETURN
     edges[(kinds == ReadingKind.DOOR_ARC) & (following == ReadingKind.DOOR_ARC)] = EdgeKind.DOOR_ARC
     if not fused.scan.full_turn:
         edges[-1] = EdgeKind.SIDE

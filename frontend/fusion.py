@@ -13,6 +13,7 @@ from frontend.infrared_edges import InfraredEdge, Opening, infrared_edges, pair_
 from frontend.opening import smeared, undo_beam
 from frontend.redrawing import gap_core, opening_arc, why_closed
 from frontend.rigid_motion import transform
+from frontend.room_corners import room_corners
 from frontend.scan import Booleans, Floats, Integers, Scan
 from frontend.wall_lines import Profile
 
@@ -24,6 +25,7 @@ class ReadingKind(IntEnum):
     NO_RETURN = 1
     DOOR_ARC = 2
     REJECTED = 3
+    INFERRED = 4  # in a corner too narrow for the beam: where its two walls would meet
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,8 @@ class FusionSettings:
 class FusedScan:
     """A scan after the rules.
 
-    ranges: (n,) metres along each bearing (n,), always finite; raw_ranges: (n,) as the sensor gave them.
+    ranges: (n,) metres along each bearing (n,), always finite; raw_ranges: (n,) as the sensor gave them;
+    vouched: (n,) as far as readings vouch for, without what is inferred.
     kinds: (n,) ReadingKind. spread: (n,) standard deviation along the beam, metres, and doubt: (n,) what undoing the
     beam adds to it.
     edges: valid infrared edges; openings: the pairs among them that were redrawn as arcs.
@@ -59,6 +62,7 @@ class FusedScan:
     bearings: Floats
     ranges: Floats
     raw_ranges: Floats
+    vouched: Floats
     kinds: NDArray[np.uint8]
     spread: Floats
     doubt: Floats
@@ -91,18 +95,18 @@ def fuse(scan: Scan, settings: FusionSettings) -> FusedScan:
     edges = infrared_edges(scan)
     pairs, lone = pair_edges(edges, scan)
     reasons |= {edge.jamb: f"a lone infrared edge at {np.degrees(edge.bearing):.1f}° opens nothing" for edge in lone}
-    openings, profile = [], Profile(scan.bearings, ranges, kinds == ReadingKind.MEASURED)
-    for opening in pairs:
-        reason = why_closed(opening, profile, scan, settings.door_depth)
-        if reason is None:
-            openings.append(opening)
-            ranges, kinds = _redrawn(opening, ranges, kinds, scan)
-        else:
-            reasons[opening.right.jamb] = reason
+    profile = Profile(scan.bearings, ranges, kinds == ReadingKind.MEASURED)
+    closed = [why_closed(opening, profile, scan, settings.door_depth) for opening in pairs]
+    reasons |= {pair.right.jamb: reason for pair, reason in zip(pairs, closed, strict=True) if reason is not None}
+    openings = [pair for pair, reason in zip(pairs, closed, strict=True) if reason is None]
+    for opening in openings:
+        ranges, kinds = _redrawn(opening, ranges, kinds, scan)
+    vouched = ranges
+    ranges, kinds = _with_corners(ranges, kinds, scan)
     spread = np.full(ranges.size, np.hypot(scan.sensor.range_noise, scan.sensor.quantum / np.sqrt(12)))
     moved = np.where(kinds == ReadingKind.MEASURED, ranges - scan.ranges, 0.0)
     return FusedScan(
-        scan, scan.bearings, ranges, scan.ranges, kinds, spread, settings.beam_doubt * np.nan_to_num(moved),
+        scan, scan.bearings, ranges, scan.ranges, vouched, kinds, spread, settings.beam_doubt * np.nan_to_num(moved),
         tuple(edges), tuple(openings), _jambs(openings, ranges, scan), reasons,
     )  # fmt: skip
 
@@ -186,6 +190,15 @@ def _redrawn(
     ranges, kinds = ranges.copy(), kinds.copy()
     ranges[places] = arc
     kinds[places[drawn]] = ReadingKind.DOOR_ARC
+    return ranges, kinds
+
+
+def _with_corners(ranges: Floats, kinds: NDArray[np.uint8], scan: Scan) -> tuple[Floats, NDArray[np.uint8]]:
+    """Ranges and kinds (n,) with the corners that two walls beside them foretell."""
+    profile = Profile(scan.bearings, ranges, kinds == ReadingKind.MEASURED)
+    ranges, kinds = ranges.copy(), kinds.copy()
+    for corner in room_corners(profile, np.isfinite(scan.ranges) & (kinds != ReadingKind.DOOR_ARC), scan):
+        ranges[corner.readings], kinds[corner.readings] = corner.ranges, ReadingKind.INFERRED
     return ranges, kinds
 
 

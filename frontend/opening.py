@@ -28,7 +28,7 @@ def undo_beam(bearings: Floats, ranges: Floats, beam: Floats, noise: float, full
     first, last = _windows(bearings, widest, full_turn)
     smooth = _smoothed(ranges, full_turn)
     farthest, rivals, excess = _vouched(bearings, ranges, smooth, np.column_stack([first, last]), beam, noise)
-    return farthest - np.minimum(noise * expected_maxima(int(np.max(rivals)))[rivals], excess)
+    return np.asarray(farthest - np.minimum(noise * expected_maxima(int(np.max(rivals)))[rivals], excess))
 
 
 def expected_maxima(most: int) -> Floats:

@@ -26,12 +26,16 @@ class Profile:
 
 @dataclass(frozen=True, eq=False)
 class WallLine:
-    """A fitted wall in the sensor's frame: middle (2,), direction, and variances of its offset and its direction."""
+    """A fitted wall in the sensor's frame: middle (2,), direction, and variances of its offset and its direction.
+
+    away: how many readings from the place the fit begins.
+    """
 
     middle: Floats
     direction: float
     offset_variance: float
     direction_variance: float
+    away: int
 
     def ranges(self, bearings: Floats) -> tuple[Floats, Floats]:
         """Where beams (n,) meet the wall, `inf` where they do not, and how surely: metres and standard deviations."""
@@ -56,12 +60,12 @@ def wall_beside(profile: Profile, place: int, sense: int, noise: float) -> WallL
     points = profile.ranges[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)])
     span = min(int(FARTHEST / np.median(np.diff(bearings))), bearings.size // 2)
     row = _longest_line(points, profile.measured, place, sense, span, noise)
-    return None if np.isnan(row[0]) else WallLine(row[:2], float(row[2]), float(row[3]), float(row[4]))
+    return None if np.isnan(row[0]) else WallLine(row[:2], float(row[2]), float(row[3]), float(row[4]), int(row[5]))
 
 
 @compiled
 def _longest_line(points: Floats, measured: Booleans, place: int, sense: int, span: int, noise: float) -> Floats:
-    """The fit over the most readings of one unbroken stretch that no reading leaves by over 4 standard deviations."""
+    """The fit over the most readings of one unbroken stretch, none over 4 standard deviations off; its start last."""
     n = points.shape[0]
     best, most = np.full(6, np.nan), LEAST_READINGS - 1
     for start in range(span):
@@ -76,4 +80,5 @@ def _longest_line(points: Floats, measured: Booleans, place: int, sense: int, sp
                 across = (stretch[:count, 1] - line[1]) * x - (stretch[:count, 0] - line[0]) * y
                 if np.max(np.abs(across)) <= 4 * noise:
                     best, most = line, count
+                    best[5] = start
     return best
