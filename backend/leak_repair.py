@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from shapely import MultiPolygon
 
 from backend.cell_lines import distinct_views
+from backend.contours import as_polygons
 from backend.evidence import Counts
 from backend.samples import Samples
 from backend.sight import Sight
@@ -60,12 +61,15 @@ def open_bins(bins: FaceBins, mask: NDArray[np.bool_], counts: Counts) -> NDArra
     return np.asarray(np.all([mask[cell[:, 1], cell[:, 0]] for cell in cells], axis=0))
 
 
-def standing(bins: FaceBins, sight: Sight, depth: float) -> NDArray[np.bool_]:
-    """Bins (b,) that more views measured than saw through, from the front, to `depth` metres behind them."""
+def standing(bins: FaceBins, sight: Sight, depth: float, share: float = 0.5) -> NDArray[np.bool_]:
+    """Bins (b,) that more than a share of those views measured that looked at them from the front.
+
+    The others saw through, to `depth` metres behind them.
+    """
     point, view = sight.pairs(bins.middles - depth * bins.normals)
     ahead = np.sum((sight.origins[view] - bins.middles[point]) * bins.normals[point], axis=1) > 0
     through = np.bincount(point[ahead], minlength=len(bins.support))
-    return np.asarray(bins.support > through)
+    return np.asarray((1 - share) * bins.support > share * through)
 
 
 def closed(mask: NDArray[np.bool_], bins: FaceBins, counts: Counts, depth: float) -> NDArray[np.bool_]:
@@ -84,9 +88,21 @@ def _along(normals: Floats) -> Floats:
     return np.stack([normals[:, 1], -normals[:, 0]], axis=1)
 
 
-def leaks(free: MultiPolygon, bins: FaceBins, tolerance: float) -> Floats:
-    """Middles (l, 2) of the bins that lie more than `tolerance` metres inside the free space."""
+def leaking(free: MultiPolygon, bins: FaceBins, tolerance: float) -> FaceBins:
+    """The bins that lie more than `tolerance` metres inside the free space."""
     shapely.prepare(free)
-    inside = bins.middles[shapely.contains_xy(free, bins.middles)]
-    away = np.array([free.boundary.distance(shapely.Point(middle)) for middle in inside])
-    return np.asarray(inside[away > tolerance]).reshape(-1, 2)
+    inside = bins.where(shapely.contains_xy(free, bins.middles))
+    tree = shapely.STRtree(shapely.get_parts(free.boundary))
+    near, _ = tree.query(shapely.points(inside.middles), predicate="dwithin", distance=tolerance)
+    deep = np.ones(len(inside.support), dtype=np.bool_)
+    deep[near] = False
+    return inside.where(deep)
+
+
+def repaired(free: MultiPolygon, bins: FaceBins, depth: float) -> MultiPolygon:
+    """The free space without a strip of a whole bin, `depth` metres thick, behind each bin that lies as deep in it."""
+    found = leaking(free, bins, depth)
+    half = 0.5 * BIN * _along(found.normals)
+    start, end, back = found.middles - half, found.middles + half, depth * found.normals
+    strips = shapely.polygons(np.stack([start, end, end - back, start - back], axis=1))
+    return as_polygons(free.difference(shapely.union_all(strips))) if len(strips) else free

@@ -14,7 +14,8 @@ from backend.doors import DoorSettings, Opening, doors_of
 from backend.evidence import Counts
 from backend.far_ground import far_ground
 from backend.hidden_objects import ObjectSettings, objects_in, without_slivers
-from backend.leak_repair import closed, leaks, open_bins, standing, supported_bins
+from backend.leak_alarm import alarms, why
+from backend.leak_repair import closed, open_bins, repaired, standing, supported_bins
 from backend.provenance import boundary_edges, label_edges
 from backend.room_map import Decision, MapEdge, Obstacle, RoomMap, Verdict
 from backend.samples import Samples
@@ -31,6 +32,7 @@ class ReadingSettings:
 
     opening: float = 0.05  # larger removes wider slits and spikes of free space
     roomy: float = 0.15  # larger clears only wider ground on a mere bound: a door's arc, a sonar's silence
+    contested: float = 1 / 3  # of the views that looked there; larger raises the alarm for better measured surface only
     inset: float = 0.05  # larger keeps plans farther from surfaces
     spacing: float = 0.05  # larger labels faster, by fewer samples
     reach: float = 0.06  # larger lets samples farther off support an edge, and faces farther off attract it
@@ -65,14 +67,15 @@ def read_map(
 ) -> RoomMap:
     """The room map that the votes, the faces and the placed samples (rows of views) tell."""
     sight = sight_of(views.rings, views.origins)
-    bins = supported_bins(samples, faces)
+    measured = supported_bins(samples, faces)
+    bins = measured.where(standing(measured, sight, settings.panel))
+    contested = measured.where(standing(measured, sight, settings.panel, settings.contested))
     mask = counts.free > counts.wall
-    bins = bins.where(standing(bins, sight, settings.panel))
     mask = closed(mask, bins.where(open_bins(bins, mask, counts)), counts, settings.panel)
     mask |= _far_ground(views, samples, mask, counts, settings.roomy)
     free = _polygons(mask, faces, counts, settings)
     free = _known_ground(free, views.origins, settings.least_area)
-    free = without_slivers(free, samples.points, settings.reach, settings.objects)
+    free = repaired(without_slivers(free, samples.points, settings.reach, settings.objects), bins, settings.panel)
     edges = label_edges(boundary_edges(free), samples.thinned(settings.spacing), counts, settings.reach)
     objects = objects_in(free, edges, settings.objects)
     walls = as_polygons(shapely.union_all([free, *(thing.outline for thing in objects)]))
@@ -80,7 +83,9 @@ def read_map(
     safety = as_polygons(free.buffer(-settings.inset, join_style="mitre"))
     decided = _decisions(views, (mask, counts), sight, edges, settings)
     inferred = tuple(_inferred(thing, sight) for thing in objects if thing.inferred)
-    room_map = RoomMap(free, safety, edges, doors, objects, leaks(free, bins, settings.panel), decided + inferred)
+    leaks, told = alarms(free, contested, samples, sight, settings.panel)
+    reasons = tuple(why(views.index[measuring], views.index[through]) for measuring, through in told)
+    room_map = RoomMap(free, safety, edges, doors, objects, leaks, decided + inferred, reasons)
     return _by_index(room_map, views.index)
 
 

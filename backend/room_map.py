@@ -85,6 +85,7 @@ class RoomMap:
 
     free: the best estimate of free space. safety: the same, inset for planning.
     leaks: (l, 2) points of supported real edges that lie inside the final free space (the wall-leak alarm).
+    leak_reasons: for each of them, why the merge let it go.
     decisions: what was kept, thrown away and inferred, and by whom.
     """
 
@@ -95,3 +96,4 @@ class RoomMap:
     obstacles: tuple[Obstacle, ...]
     leaks: Floats
     decisions: tuple[Decision, ...] = ()
+    leak_reasons: tuple[str, ...] = ()

@@ -15,7 +15,8 @@ class Sight:
     """Ring edges of all views, each view's in rising order of bearing.
 
     origins: (v, 2); first: (v + 1,) where each view's edges begin; bearing: (e,) of an edge's start, counted from
-    the view's first edge; width: (e,) bearing the edge spans; edges: (e, 2, 2); reach: (v,) farthest corner.
+    the view's first edge; width: (e,) bearing the edge spans; edges: (e, 2, 2); boxes: (v, 2, 2) lowest and highest
+    x and y of each view's ring.
     """
 
     origins: Floats
@@ -23,14 +24,15 @@ class Sight:
     bearing: Floats
     width: Floats
     edges: Floats
-    reach: Floats
+    boxes: Floats
 
     def pairs(self, points: Floats) -> tuple[Ints, Ints]:
         """All (point, view) where the point (n, 2) lies in the view's free polygon, by point."""
         rings = (self.first, self.bearing, self.width, self.edges)
-        point, view = _find(points, self.origins, self.reach, rings)
-        order = np.argsort(point, kind="stable")
-        return point[order], view[order]
+        by_x = np.argsort(points[:, 0])
+        point, view = _find(points[by_x], self.origins, self.boxes, rings)
+        order = np.argsort(by_x[point], kind="stable")
+        return by_x[point[order]], view[order]
 
 
 def sight_of(rings: list[Floats], origins: Floats) -> Sight:
@@ -38,8 +40,8 @@ def sight_of(rings: list[Floats], origins: Floats) -> Sight:
     parts = [_fan(ring, origin) for ring, origin in zip(rings, origins, strict=True)]
     first = np.concatenate([[0], np.cumsum([len(bearing) for bearing, _, _ in parts])])
     bearing, width, edges = (np.concatenate([part[i] for part in parts]) for i in range(3))
-    reach = np.array([np.linalg.norm(ring - origin, axis=1).max() for ring, origin in zip(rings, origins, strict=True)])
-    return Sight(origins, first, bearing, width, edges, reach)
+    boxes = np.array([(ring.min(axis=0), ring.max(axis=0)) for ring in rings])
+    return Sight(origins, first, bearing, width, edges, boxes)
 
 
 def _fan(ring: Floats, origin: Floats) -> tuple[Floats, Floats, Floats]:
@@ -55,17 +57,18 @@ def _fan(ring: Floats, origin: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 @njit(cache=True)
-def _find(points, origins, reach, rings):  # type: ignore[no-untyped-def]
-    """All pairs, view by view."""
+def _find(points, origins, boxes, rings):  # type: ignore[no-untyped-def]
+    """All pairs, view by view; points in rising order of x."""
     first, bearing, width, edges = rings
     count = 0
     found = np.empty((2, len(points) + 64), dtype=np.int64)
     for view in range(len(origins)):
         start, end = first[view], first[view + 1]
-        for point in range(len(points)):
-            x, y = points[point, 0] - origins[view, 0], points[point, 1] - origins[view, 1]
-            if x * x + y * y > reach[view] ** 2:
+        low, high = np.searchsorted(points[:, 0], boxes[view, :, 0])
+        for point in range(low, high):
+            if points[point, 1] < boxes[view, 0, 1] or points[point, 1] > boxes[view, 1, 1]:
                 continue
+            x, y = points[point, 0] - origins[view, 0], points[point, 1] - origins[view, 1]
             towards = bearing[start] + (np.arctan2(y, x) - bearing[start]) % (2 * np.pi)
             edge = start + np.searchsorted(bearing[start:end], towards, side="right") - 1
             if towards > bearing[edge] + width[edge]:

@@ -41,6 +41,7 @@ def read_room(path: Path) -> RoomMap:
             doors=tuple(_door(*feature) for feature in _of_kind(features, "door")),
             obstacles=tuple(_obstacle(*feature) for feature in _of_kind(features, "obstacle")),
             leaks=points_of_kind(features, "leak"),
+            leak_reasons=tuple(says["reason"] for _, says in _of_kind(features, "leak")),
         )
     except KeyError as missing:
         raise RoomFileError(f"{path}: a feature lacks the property {missing}; was it written by merge?") from missing
@@ -100,8 +101,8 @@ def _features(room: RoomMap, landmarks: Floats) -> Iterable[dict[str, Any]]:
         yield _feature(body.outline, {"kind": "obstacle", **says})
     for number, landmark in enumerate(landmarks):
         yield _feature(Point(landmark), {"kind": "landmark", "number": number})
-    for leak in room.leaks:
-        yield _feature(Point(leak), {"kind": "leak"})
+    for leak, reason in zip(room.leaks, room.leak_reasons, strict=True):
+        yield _feature(Point(leak), {"kind": "leak", "reason": reason})
 
 
 def _feature(geometry: BaseGeometry, properties: Properties) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 import numpy as np
 from shapely import MultiPolygon, box
 
-from backend.leak_repair import leaks, standing, supported_bins
+from backend.leak_repair import leaking, repaired, standing, supported_bins
 from backend.polygon_merging import merge_views
 from backend.sight import sight_of
 from backend.wall_faces import FaceSettings, fuse_faces
@@ -28,11 +28,20 @@ def test_a_face_stands_unless_more_views_saw_through_it_from_the_front() -> None
     assert standing(bins, from_behind, 0.05).all()
 
 
-def test_the_alarm_names_faces_inside_free_ground_only() -> None:
+def test_faces_leak_inside_free_ground_only() -> None:
     samples = wall_samples(*FACE, 3, 0.002, np.random.default_rng(1))
     bins = supported_bins(samples, fuse_faces(samples, FaceSettings()))
-    assert len(leaks(MultiPolygon([box(-1, 0, 3, 2)]), bins, 0.05)) == 0
-    assert len(leaks(MultiPolygon([box(-1, -1, 3, 2)]), bins, 0.05)) == len(bins.support)
+    assert len(leaking(MultiPolygon([box(-1, 0, 3, 2)]), bins, 0.05).support) == 0
+    assert len(leaking(MultiPolygon([box(-1, -1, 3, 2)]), bins, 0.05).support) == len(bins.support)
+
+
+def test_a_face_inside_free_ground_gets_a_strip_behind_it_and_no_other() -> None:
+    samples = wall_samples(*FACE, 3, 0.002, np.random.default_rng(1))
+    bins = supported_bins(samples, fuse_faces(samples, FaceSettings()))
+    mended = repaired(MultiPolygon([box(-1, -1, 3, 2)]), bins, 0.05)
+    assert box(-1, -1, 3, 2).difference(mended).symmetric_difference(box(0, -0.05, 1.95, 0)).area < 0.02
+    untouched = MultiPolygon([box(-1, 0, 3, 2)])
+    assert repaired(untouched, bins, 0.05).equals(untouched)
 
 
 def test_a_panel_thinner_than_the_strip_survives_many_views_from_both_sides() -> None:

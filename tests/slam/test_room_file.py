@@ -20,6 +20,7 @@ ROOM = RoomMap(
     doors=(Door("north", np.array([[1.0, 4.0], [1.9, 4.0]]), 0.75, np.array([1])),),
     obstacles=(Obstacle(box(2, 2, 3, 3), True, 0, np.array([3])),),
     leaks=np.array([[5.0, 0.5]]),
+    leak_reasons=("2 views measured it, 3 saw through it: it came after view 4",),
 )
 
 
@@ -42,6 +43,7 @@ def test_a_map_read_back_is_the_map_that_was_written(tmp_path: Path) -> None:
     assert read.doors[0].width == pytest.approx(0.9)
     assert read.obstacles[0].inferred
     assert np.array_equal(read.leaks, ROOM.leaks)
+    assert read.leak_reasons == ROOM.leak_reasons
     assert np.array_equal(points_of_kind(read_features(path), "landmark"), [[0.5, 0.25]])
 
 
