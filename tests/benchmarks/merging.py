@@ -1,8 +1,8 @@
 """Merging: furnished plans with misplaced views, against other ways to merge; order, time and memory."""
 
+import os
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,63 +13,59 @@ from shapely import MultiPolygon
 from backend.polygon_merging import Merger, merge_views
 from backend.provenance import boundary_edges
 from backend.room_map import MapEdge, MapEdgeKind, RoomMap
-from backend.view import View
 from slam.map_scores import MapScores, MapTruth, score_map
-from tests.backend.plan_rays import (
-    Plan,
-    Rays,
-    furnished_plan,
-    misplaced,
-    scattered_poses,
-    seen_from,
-    view_of,
-)
+from tests.backend.plan_rays import Rays, furnished_plan, misplaced, scattered_poses, view_of
+from tests.benchmarks.merged_paths import Paths, paths_on
+from tests.benchmarks.merging_cases import FLOORS, VIEWS, Case, floor_case, furnished_case
 from tests.benchmarks.merging_peers import PEERS
 
-Floats = NDArray[np.float64]
 Row = dict[str, Any]
-PLANS, VIEWS = 20, 40
+PLANS = 20
 NOISES = ((0.02, 0.3), (0.05, 0.5))
 TARGETS = {"IoU": (0.985, 0.975), "boundary F1 at 5 cm": (0.98, 0.93), "wall breach": (0.0, 0.0)}
 
 
-@dataclass(frozen=True, eq=False)
-class Case:
-    """A plan, what its true poses saw, and the views."""
-
-    plan: Plan
-    truth: MapTruth
-    poses: Floats
-    views: list[View]
-
-
 def rows() -> list[Row]:
-    """All rows of the part."""
-    cases = [_case(number) for number in range(PLANS)]
-    return [*_against_peers(cases), *_by_size()]
+    """All rows of the part; real floors only where their drawings are."""
+    furnished = _against_peers("furnished plans", [furnished_case(number) for number in range(PLANS)])
+    if "ROOMSKETCH_DATA" not in os.environ:
+        return [*furnished, *_by_size()]
+    return [*furnished, *_against_peers("mlstruct floors", [floor_case(floor) for floor in FLOORS]), *_by_size()]
 
 
-def _case(number: int) -> Case:
-    rng = np.random.default_rng(1000 + number)
-    plan = furnished_plan(rng, 3 + number % 10)
-    poses = scattered_poses(plan, VIEWS, rng)
-    views = [view_of(plan, pose, Rays(), rng) for pose in poses]
-    seen = seen_from(plan, poses, Rays().max_range)
-    return Case(plan, MapTruth(plan.free, seen, plan.doors, plan.obstacles), poses, views)
-
-
-def _against_peers(cases: list[Case]) -> list[Row]:
+def _against_peers(plans: str, cases: list[Case]) -> list[Row]:
     found: list[Row] = []
     for level, (metres, degrees) in enumerate(NOISES):
         rng = np.random.default_rng(77)
         placed = [misplaced(case.poses, metres, degrees, rng) for case in cases]
-        ours = [score_map(merge_views(c.views, p), c.truth) for c, p in zip(cases, placed, strict=True)]
+        maps = [merge_views(case.views, poses) for case, poses in zip(cases, placed, strict=True)]
+        ours = [score_map(room_map, case.truth) for room_map, case in zip(maps, cases, strict=True)]
         others = {
             name: [score_map(_labelled(peer(c.views, p), c.truth), c.truth) for c, p in zip(cases, placed, strict=True)]
             for name, peer in PEERS.items()
         }
-        found += _rows_at(f"pose noise {metres * 100:.0f} cm / {degrees}°", level, ours, others)
+        noise = f"{plans}, pose noise {metres * 100:.0f} cm / {degrees}°"
+        found += _rows_at(noise, level, ours, others)
+        found += _rows_of_paths(noise, [_paths(room_map, case) for room_map, case in zip(maps, cases, strict=True)])
     return found
+
+
+def _paths(room_map: RoomMap, case: Case) -> Paths:
+    return paths_on(room_map.safety, case.truth.free, case.truth.seen, np.random.default_rng(5))
+
+
+def _rows_of_paths(noise: str, paths: list[Paths]) -> list[Row]:
+    asked, lengths = sum(path.asked for path in paths), np.array([x for path in paths for x in path.lengths])
+    note = f"disc of 15 cm on the safety layer, {len(paths)} plans"
+    return [
+        _row(f"{name}, {noise}", value, "", better, (target, {}, asked, note))
+        for name, value, better, target in (
+            ("paths through a true wall", sum(path.through for path in paths), "lower", 0.0),
+            ("paths found", sum(path.found for path in paths) / asked, "higher", None),
+            ("length over the true plan's, mean", float(lengths.mean()), "lower", 1.01),
+            ("length over the true plan's, least", float(lengths.min()), "higher", 0.995),
+        )
+    ]
 
 
 def _rows_at(noise: str, level: int, ours: list[MapScores], others: dict[str, list[MapScores]]) -> list[Row]:
@@ -78,7 +74,7 @@ def _rows_at(noise: str, level: int, ours: list[MapScores], others: dict[str, li
     for name, better in MEASURES.items():
         target = TARGETS[name][level] if name in TARGETS else None
         peers = {peer: _mean(name, scores) for peer, scores in others.items()} if name in COMPARED else {}
-        note = f"mean of {len(ours)} furnished plans, {VIEWS} lidar views"
+        note = f"mean of {len(ours)} plans, {VIEWS} lidar views"
         table.append(_row(f"{name}, {noise}", _mean(name, ours), "", better, (target, peers, len(ours), note)))
     return table
 
@@ -86,7 +82,8 @@ def _rows_at(noise: str, level: int, ours: list[MapScores], others: dict[str, li
 MEASURES = {
     "IoU": "higher", "boundary F1 at 5 cm": "higher", "wall breach": "lower", "chamfer": "lower",
     "worst IoU": "higher", "corner recall": "higher", "doors found": "higher", "doors right": "higher",
-    "obstacle recall": "higher", "leaks": "lower", "plans with another number of parts": "lower",
+    "obstacle recall": "higher", "inferred obstacles right": "higher", "inferred obstacles found": "higher",
+    "leaks": "lower", "plans with another number of parts": "lower",
 }  # fmt: skip
 COMPARED = ("IoU", "boundary F1 at 5 cm", "wall breach", "chamfer")
 
@@ -106,6 +103,8 @@ VALUES: dict[str, Callable[[MapScores], float]] = {
     "doors found": lambda s: s.doors.recall,
     "doors right": lambda s: s.doors.precision,
     "obstacle recall": lambda s: s.obstacles.recall,
+    "inferred obstacles right": lambda s: s.obstacles.inferred_precision,
+    "inferred obstacles found": lambda s: s.obstacles.inferred_recall,
     "leaks": lambda s: s.leaks,
     "plans with another number of parts": lambda s: s.components != s.true_components,
 }
@@ -141,6 +140,7 @@ def _by_size() -> list[Row]:
     start = time.process_time()
     room_map = merger.result()
     reading = time.process_time() - start
+    moving = _moved(merger, placed, rng)
     order = rng.permutation(len(views))
     other = merge_views([views[i] for i in order], placed[order])
     apart = room_map.free.symmetric_difference(other.free).area / room_map.free.area
@@ -149,10 +149,20 @@ def _by_size() -> list[Row]:
         _row("900 views merged", sum(times) + reading, "s", "lower", (10.0, {}, 1, "adding and reading, one core")),
         _row("adding a view at the end", late, "ms", "lower", (15.0, {}, 100, "its votes counted")),
         _row("time per view, last 100 over first 100", late / early, "", "lower", (1.5, {}, 100, "")),
+        _row("moving one of 900 views", moving, "ms", "lower", (15.0, {}, 50, "its votes taken back and cast anew")),
         _row("reading the whole map", reading, "s", "lower", (None, {}, 1, "settled, fused, labelled")),
         _row("memory of the votes", merger.evidence_bytes / 1e6, "MB", "lower", (300.0, {}, 1, "")),
         _row("another order of views: area that differs", 100 * apart, "%", "lower", (0.1, {}, 1, "")),
     ]
+
+
+def _moved(merger: Merger, poses: NDArray[np.float64], rng: np.random.Generator) -> float:
+    """Milliseconds for a view to move by a few centimetres."""
+    chosen = rng.choice(len(poses), 50, replace=False)
+    start = time.process_time()
+    for index in chosen:
+        merger.move(int(index), poses[index] + np.array([0.05, -0.03, 0.01]))
+    return (time.process_time() - start) / len(chosen) * 1e3
 
 
 def _row(name: str, value: float, unit: str, better: str, rest: tuple[float | None, dict[str, float], int, str]) -> Row:
