@@ -12,14 +12,15 @@ class RecordingError(Exception):
 
 @dataclass(frozen=True)
 class DamagedLine:
-    """A line that was left out, or used only in part, and why."""
+    """A line or numbered message that was left out, or used only in part, and why; None where it is the whole file."""
 
     file: str
-    line: int
+    line: int | None
     reason: str
 
     def __str__(self) -> str:
-        return f"{self.file} line {self.line}: {self.reason}"
+        place = "" if self.line is None else f" line {self.line}"
+        return f"{self.file}{place}: {self.reason}"
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class Recording:
     """Scans in the order of their times, at least one.
 
     odometry_noise: None where nobody measured it. odometry: raw dead reckoning between the scans, where the file has
-    more of it than the scans carry.
+    more of it than the scans carry. starts: numbers of the scans after the first that begin another drive.
     """
 
     name: str
@@ -44,3 +45,4 @@ class Recording:
     damaged: tuple[DamagedLine, ...] = ()
     odometry_noise: OdometryNoise | None = None
     odometry: Trajectory | None = None
+    starts: tuple[int, ...] = ()

@@ -1,6 +1,8 @@
 """The sieve every reader pours its lines through: good ones become values, damaged ones are kept with their reason."""
 
 import gzip
+import io
+import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
@@ -32,13 +34,13 @@ class Sieve:
         self.left_out = 0
 
     def lines(self) -> Iterator[tuple[int, str]]:
-        """Numbered lines, from 1, unpacked where the name ends in .gz; bytes that are no text become question marks."""
+        """Numbered lines, from 1, of plain, .gz and .zip files; bytes that are no text become question marks."""
         number = 0
         try:
             with _opened(self.path) as file:
                 for number, text in enumerate(file, start=1):
                     yield number, text.rstrip("\r\n")
-        except (EOFError, gzip.BadGzipFile, zlib.error) as damage:
+        except (EOFError, gzip.BadGzipFile, zipfile.BadZipFile, zlib.error) as damage:
             self.note(number + 1, f"the compressed file breaks off ({damage})")
         except OSError as reason:
             raise RecordingError(f"{self.path} cannot be read: {reason.strerror or reason}") from reason
@@ -116,4 +118,11 @@ def _is_number(field: str) -> bool:
 def _opened(path: Path) -> TextIO:
     if path.suffix == ".gz":
         return gzip.open(path, "rt", encoding="utf-8", errors="replace")
+    if path.suffix == ".zip":
+        packed = zipfile.ZipFile(path)
+        # Some archivers add folders and hidden files of their own.
+        files = [name for name in packed.namelist() if not name.endswith("/") and "/." not in f"/{name}"]
+        if len(files) != 1:
+            raise RecordingError(f"{path} packs {len(files)} files, but one recording is one file")
+        return io.TextIOWrapper(packed.open(files[0]), encoding="utf-8", errors="replace")
     return path.open(encoding="utf-8", errors="replace")
