@@ -6,7 +6,7 @@ only if it belongs to the same scans, settings and version.
 
 import hashlib
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -14,6 +14,7 @@ from pathlib import Path
 from frontend.scan import Scan
 from slam import toml_file
 from slam.logbook import Logbook
+from slam.readers.recording import Recording
 from slam.settings import Settings
 from slam.whole_output import write_whole
 
@@ -49,9 +50,9 @@ class Keeper:
         self._fingerprint = hashlib.sha256()
         self._lines = 0  # of the logbook that belong to whole scans
 
-    def passed(self, scan: Scan) -> None:
-        """The mapper has taken in the next scan."""
-        _add_print(self._fingerprint, scan)
+    def passed(self, scan: Scan, starts: bool = False) -> None:
+        """The mapper has taken in the next scan, which may start another drive."""
+        _add_print(self._fingerprint, scan, starts)
         self.scans, self._lines = self.scans + 1, len(self.logbook.lines)
         if self.scans > self.known and self.scans % self.every == 0:
             self.write()
@@ -72,13 +73,13 @@ class Keeper:
         write_whole(self.path, "\n".join([json.dumps(asdict(facts)), *lines]) + "\n")
 
 
-def resumed(path: Path, every: int, scans: Sequence[Scan], settings: Settings) -> Keeper:
+def resumed(path: Path, every: int, recording: Recording, settings: Settings) -> Keeper:
     """A keeper that goes on from the file at `path`. Raises CheckpointError where that is of another run or damaged."""
     facts, lines = _read(path)
     differs = {
         f"was written by version {facts.version}": facts.version != version("roomsketch"),
         "is of a run with other settings": facts.settings != toml_file.dumps(settings),
-        "is of another recording": facts.scans > len(scans) or facts.fingerprint != _print_of(scans[: facts.scans]),
+        "is of another recording": facts.fingerprint != _print_of(recording, facts.scans),
     }
     for reason, holds in differs.items():
         if holds:
@@ -105,16 +106,16 @@ def _fingerprint_of(lines: Iterable[str]) -> str:
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()
 
 
-def _print_of(scans: Iterable[Scan]) -> str:
+def _print_of(recording: Recording, scans: int) -> str:
     fingerprint = hashlib.sha256()
-    for scan in scans:
-        _add_print(fingerprint, scan)
+    for number, scan in enumerate(recording.scans[:scans]):
+        _add_print(fingerprint, scan, number in recording.starts)
     return fingerprint.hexdigest()
 
 
-def _add_print(fingerprint: "hashlib._Hash", scan: Scan) -> None:
+def _add_print(fingerprint: "hashlib._Hash", scan: Scan, starts: bool) -> None:
     """Every value of the scan goes into the fingerprint, with the sizes of its arrays."""
-    facts = (scan.sensor, scan.time, scan.ranges.size, scan.infrared is None)
+    facts = (starts, scan.sensor, scan.time, scan.ranges.size, scan.infrared is None)
     fingerprint.update(repr(facts).encode())
     for values in (scan.bearings, scan.ranges, scan.odometry):
         fingerprint.update(values.tobytes())

@@ -4,14 +4,16 @@ Each scan is fused, traced and sketched (front end), placed and tied into the fa
 the views are merged where the graph finally puts them.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from time import perf_counter
+
+import numpy as np
 
 from backend.estimate import Estimate
 from backend.polygon_merging import merge_views
 from backend.room_map import RoomMap
-from frontend.scan import Scan
+from frontend.scan import Floats, Scan
 from slam.checkpoint import Keeper
 from slam.mapper import Mapper
 from slam.perception import Percept
@@ -20,24 +22,35 @@ from slam.settings import Settings
 
 @dataclass(frozen=True, eq=False)
 class Merged:
-    """Every intermediate result of a run: one percept per scan, the estimate, the map, and seconds per stage."""
+    """Every intermediate result of a run: the percepts of the scans that stand in the map, the estimate of all scans,
+    the map, whose views are numbered like the percepts, and seconds per stage."""
 
     percepts: tuple[Percept, ...]
     estimate: Estimate
     room: RoomMap
     timings: dict[str, float]
 
+    @property
+    def poses(self) -> Floats:
+        """(m, 3) where the percepts were seen."""
+        return self.estimate.poses[self.estimate.mapped]
 
-def merge_scans(scans: Iterable[Scan], settings: Settings, keeper: Keeper | None = None) -> Merged:
+
+def merge_scans(
+    scans: Iterable[Scan], settings: Settings, keeper: Keeper | None = None, starts: Sequence[int] = ()
+) -> Merged:
     """The room map of scans in their order; any iterable will do, a log as well as a live stream.
 
-    keeper: writes checkpoints, and knows what was answered if the run goes on from one.
+    keeper: writes checkpoints, and knows what was answered if the run goes on from one. starts: the numbers of scans
+    that begin another drive, taken nobody knows where.
     """
     mapper = Mapper(settings.frontend, settings.poses, keeper.logbook if keeper else None)
-    for scan in scans:
+    for number, scan in enumerate(scans):
+        if number in starts:
+            mapper.begin_session("another drive")
         mapper.add(scan)
         if keeper is not None:
-            keeper.passed(scan)
+            keeper.passed(scan, number in starts)
     return merged_so_far(mapper, settings)
 
 
@@ -45,5 +58,6 @@ def merged_so_far(mapper: Mapper, settings: Settings) -> Merged:
     """What the scans that the mapper took in so far give; it may take in more afterwards."""
     estimate = mapper.result()
     clock = perf_counter()
-    room = merge_views([percept.view for percept in mapper.percepts], estimate.poses, settings.merging)
-    return Merged(tuple(mapper.percepts), estimate, room, {**mapper.timings, "merging": perf_counter() - clock})
+    mapped = tuple(mapper.percepts[number] for number in np.flatnonzero(estimate.mapped))
+    room = merge_views([percept.view for percept in mapped], estimate.poses[estimate.mapped], settings.merging)
+    return Merged(mapped, estimate, room, {**mapper.timings, "merging": perf_counter() - clock})

@@ -16,7 +16,7 @@ from slam.pipeline import Merged
 from slam.planning import answer_values
 from slam.pose_graph_file import g2o_text
 from slam.readers.recording import Recording
-from slam.recordings import open_recording
+from slam.recordings import open_together
 from slam.room_file import points_of_kind, read_features, read_room, room_text
 from slam.settings import Settings
 from slam.story import Story
@@ -39,18 +39,19 @@ class ResultError(Exception):
 
 @dataclass(frozen=True)
 class Source:
-    """Where a recording came from: its path, and the format if it was named."""
+    """Where a recording came from: its path, the format if it was named, and the paths of further drives."""
 
     path: Path
     format_name: str | None
+    further: tuple[Path, ...] = ()
 
 
 def write_result(folder: Path, merged: Merged, recording: Recording, settings: Settings) -> None:
     """All but the report and the figures, which come with what else is known by then."""
-    times = np.array([scan.time for scan in recording.scans])
+    times = np.array([percept.scan.time for percept in merged.percepts])
     trail = recording.odometry or _trail(recording)
     (folder / MAP).write_text(room_text(merged.room, merged.estimate.landmarks), encoding="utf-8")
-    (folder / TRAJECTORY).write_text(tum_text(times, merged.estimate.poses), encoding="utf-8")
+    (folder / TRAJECTORY).write_text(tum_text(times, merged.poses), encoding="utf-8")
     (folder / ODOMETRY).write_text(tum_text(trail.times, trail.poses), encoding="utf-8")
     (folder / GRAPH).write_text(g2o_text(merged.estimate), encoding="utf-8")
     (folder / SETTINGS).write_text(toml_file.dumps(settings), encoding="utf-8")
@@ -64,6 +65,7 @@ def report_of(merged: Merged, recording: Recording, source: Source, paths: dict[
         "recording": {
             "name": recording.name,
             "path": str(source.path.resolve()),
+            "further": [str(path.resolve()) for path in source.further],
             "format": source.format_name,
             "sensor": sensor.kind,
             "max_range": sensor.max_range,
@@ -72,6 +74,7 @@ def report_of(merged: Merged, recording: Recording, source: Source, paths: dict[
         "timings": {stage: round(seconds, 3) for stage, seconds in merged.timings.items()},
         "calibration": estimate.calibration,
         "rejected": [{"what": made.what, "scans": list(made.scans), "reason": made.reason} for made in refused],
+        "left_out": np.flatnonzero(~estimate.mapped).tolist(),
         "damaged_lines": [str(damaged) for damaged in recording.damaged],
         "paths": {name: answer_values(answer) for name, answer in paths.items()},
         "scores": {},
@@ -97,8 +100,9 @@ def write_report(folder: Path, report: dict[str, Any]) -> None:
 
 
 def recording_of(report: dict[str, Any]) -> Recording:
-    """The recording that a report was made from."""
-    return open_recording(Path(report["recording"]["path"]), report["recording"]["format"])
+    """The recording, of one drive or several, that a report was made from."""
+    told = report["recording"]
+    return open_together([Path(path) for path in (told["path"], *told.get("further", ()))], told["format"])
 
 
 def story_of(folder: Path) -> Story:
@@ -106,7 +110,8 @@ def story_of(folder: Path) -> Story:
     report = read_report(folder)
     scans = recording_of(report).scans
     settings = toml_file.load(folder / SETTINGS, Settings)
-    poses = read_trajectory(folder / TRAJECTORY).poses
+    poses, left_out = read_trajectory(folder / TRAJECTORY).poses, set(report.get("left_out", ()))
+    scans = tuple(scan for number, scan in enumerate(scans) if number not in left_out)
     if len(poses) != len(scans):
         raise ResultError(f"{folder / TRAJECTORY} has {len(poses)} poses, but the recording now has {len(scans)} scans")
     paths = {name: np.array(answer["poses"]) for name, answer in report["paths"].items() if answer["poses"]}
@@ -121,6 +126,7 @@ def _counts(merged: Merged, recording: Recording) -> dict[str, Any]:
     decided = Counter((made.what, made.accepted) for made in estimate.decisions)
     return {
         "scans": len(recording.scans),
+        "scans left out": len(recording.scans) - len(merged.percepts),
         "damaged lines": len(recording.damaged),
         "readings": readings.size,
         "readings without echo": int(np.isinf(readings).sum()),

@@ -14,7 +14,7 @@ from slam.logbook import Logbook
 from slam.pipeline import Merged, merge_scans
 from slam.planning import tour_or_reason
 from slam.readers.recording import Recording
-from slam.recordings import open_recording
+from slam.recordings import open_together
 from slam.result_folder import Source, report_of, write_report, write_result
 from slam.settings import Settings, knowing
 from slam.story import Story
@@ -22,33 +22,40 @@ from slam.whole_output import check_place, whole_folder
 
 
 def merge(
-    recording: Annotated[Path, typer.Argument(help="A recording folder, a CARMEN log or a CSV of ranges.")],
+    recordings: Annotated[
+        list[Path],
+        typer.Argument(help="Recording folders, CARMEN logs or CSVs of ranges; several drives become one map."),
+    ],
     to: Annotated[Path, typer.Option("--out", help="Folder for map, trajectory, report and figures.")],
     settings: Annotated[Path | None, typer.Option(help="TOML file with what differs from the defaults.")] = None,
     format_name: Annotated[str | None, typer.Option("--format", help="The recording's format, if not guessed.")] = None,
     strict: Annotated[bool, typer.Option(help="Stop at the first damaged line instead of leaving it out.")] = False,
     every: Annotated[int, typer.Option("--checkpoint-every", min=1, help="Scans between two checkpoints.")] = 200,
 ) -> None:
-    """Turn a recording into a room map with two planned paths.
+    """Turn a recording, or several drives through one building, into a room map with two planned paths.
 
     A run that was killed goes on from its last checkpoint, FOLDER.checkpoint, when the same command is given again.
     """
     check_place(to)
     opinions = Settings() if settings is None else toml_file.load(settings, Settings)
-    drive = open_recording(recording, format_name, strict=strict)
+    drive = open_together(recordings, format_name, strict=strict)
     opinions = knowing(opinions, drive.odometry_noise)
     keeper = _keeper(_checkpoint_of(to), every, drive, opinions)
     merged = _kept(drive, opinions, keeper)
     with compiling(announce_compiling):
-        paths, trouble = tour_or_reason(merged.room.safety, merged.estimate.poses[0], opinions.planning)
-    report = report_of(merged, drive, Source(recording, format_name), paths) | {"tour": trouble}
+        paths, trouble = tour_or_reason(merged.room.safety, merged.poses[0], opinions.planning)
+    report = report_of(merged, drive, Source(recordings[0], format_name, tuple(recordings[1:])), paths) | {
+        "tour": trouble
+    }
     found = {name: answer.path.poses for name, answer in paths.items() if answer.path is not None}
-    story = Story(merged.percepts, merged.estimate.poses, merged.room, merged.estimate.landmarks, found)
+    story = Story(merged.percepts, merged.poses, merged.room, merged.estimate.landmarks, found)
     with whole_folder(to) as folder:
         write_result(folder, merged, drive, opinions)
         figures.draw(story, folder / "figures")
         write_report(folder, report)
     keeper.path.unlink(missing_ok=True)
+    for lost in (made for made in merged.estimate.decisions if made.what == "session" and not made.accepted):
+        err.print(f"scans {lost.scans[0]} to {lost.scans[-1]}: {lost.reason}")
     for damaged in drive.damaged:
         err.print(f"left out or mended: {damaged}")
     print_values({**report["counts"], **{f"{name} (s)": value for name, value in report["timings"].items()}})
@@ -68,7 +75,7 @@ def _keeper(path: Path, every: int, drive: Recording, opinions: Settings) -> Kee
     """Goes on from the checkpoint at `path` if there is one of this run."""
     if path.exists():
         try:
-            keeper = resumed(path, every, drive.scans, opinions)
+            keeper = resumed(path, every, drive, opinions)
         except CheckpointError as unfit:
             err.print(f"starting over: {unfit}")
         else:
@@ -80,7 +87,7 @@ def _keeper(path: Path, every: int, drive: Recording, opinions: Settings) -> Kee
 def _kept(drive: Recording, opinions: Settings, keeper: Keeper) -> Merged:
     """The merged recording; an interruption leaves a checkpoint and says how to go on."""
     try:
-        return merge_scans(progress(drive.scans), opinions, keeper)
+        return merge_scans(progress(drive.scans), opinions, keeper, drive.starts)
     except KeyboardInterrupt:
         keeper.write()
         done = max(keeper.scans, keeper.known)

@@ -15,6 +15,7 @@ from frontend.scan import Scan
 from slam.checkpoint import CheckpointError, Keeper, resumed
 from slam.logbook import Logbook
 from slam.mapper import Mapper
+from slam.readers.recording import Recording
 from slam.recordings import open_recording
 from slam.settings import Settings
 from tests.simulated_drives import drive, once_round, round_building
@@ -27,6 +28,7 @@ from pathlib import Path
 from slam.checkpoint import Keeper
 from slam.logbook import Logbook
 from slam.pipeline import merge_scans
+from slam.readers.recording import Recording
 from slam.recordings import open_recording
 from slam.settings import Settings
 
@@ -54,6 +56,10 @@ def run(scans: list[Scan] | tuple[Scan, ...], keeper: Keeper) -> Mapper:
     return mapper
 
 
+def recorded(scans: list[Scan], starts: tuple[int, ...] = ()) -> Recording:
+    return Recording("round", tuple(scans), starts=starts)
+
+
 def fresh(path: Path, every: int = 10) -> Keeper:
     return Keeper(path, every, SETTINGS, Logbook())
 
@@ -68,8 +74,8 @@ def test_a_run_killed_without_warning_goes_on_to_the_same_bytes(tmp_path: Path) 
     path = tmp_path / "run.checkpoint"
     killed = subprocess.run([sys.executable, "-c", KILLED, str(path)], cwd=ROOT, check=False)
     assert killed.returncode == -signal.SIGKILL
-    scans = open_recording(ROOT / "datasets" / "apartment_lidar").scans
-    keeper = resumed(path, 10, scans, SETTINGS)
+    recording = open_recording(ROOT / "datasets" / "apartment_lidar")
+    scans, keeper = recording.scans, resumed(path, 10, recording, SETTINGS)
     assert keeper.known == 20
     whole = run(scans, fresh(tmp_path / "other.checkpoint")).result()
     assert same(run(scans, keeper).result(), whole)
@@ -81,7 +87,7 @@ def test_wherever_a_run_stops_it_goes_on_to_the_same_bytes(scans: list[Scan], tm
     first = fresh(path, every=1000)
     run(scans[:stopped], first)
     first.write()
-    second = resumed(path, 1000, scans, SETTINGS)
+    second = resumed(path, 1000, recorded(scans), SETTINGS)
     questions = len(second.logbook.lines)
     whole = run(scans, fresh(tmp_path / "other"))
     assert same(run(scans, second).result(), whole.result())
@@ -94,7 +100,7 @@ def test_a_whole_file_is_there_from_every_tenth_scan_on(scans: list[Scan], tmp_p
     for number, scan in enumerate(scans[:25], start=1):
         mapper.add(scan)
         keeper.passed(scan)
-        known = resumed(keeper.path, 10, scans, SETTINGS).known if number >= 10 else 0
+        known = resumed(keeper.path, 10, recorded(scans), SETTINGS).known if number >= 10 else 0
         assert known == number // 10 * 10
         assert [path.name for path in tmp_path.iterdir()] == ["run.checkpoint"] * (number >= 10)
 
@@ -104,7 +110,7 @@ def test_an_interruption_inside_a_scan_is_kept_up_to_the_scan_before(scans: list
     run(scans[:13], keeper)
     keeper.logbook.answer(lambda: "an answer of scan 13, which never ended")
     keeper.write()
-    again = resumed(keeper.path, 10, scans, SETTINGS)
+    again = resumed(keeper.path, 10, recorded(scans), SETTINGS)
     assert again.known == 13
     assert len(again.logbook.lines) == len(keeper.logbook.lines) - 1
 
@@ -114,10 +120,10 @@ def test_a_run_that_is_stopped_while_it_catches_up_keeps_the_better_checkpoint(
 ) -> None:
     keeper = fresh(tmp_path / "run.checkpoint")
     run(scans[:20], keeper)
-    again = resumed(keeper.path, 10, scans, SETTINGS)
+    again = resumed(keeper.path, 10, recorded(scans), SETTINGS)
     run(scans[:12], again)
     again.write()
-    assert resumed(keeper.path, 10, scans, SETTINGS).known == 20
+    assert resumed(keeper.path, 10, recorded(scans), SETTINGS).known == 20
 
 
 def moved(scan: Scan) -> Scan:
@@ -130,18 +136,22 @@ OTHER_SETTINGS = replace(SETTINGS, poses=replace(SETTINGS.poses, keyframe_metres
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        (lambda scans: (scans, OTHER_SETTINGS), "other settings"),
-        (lambda scans: ([*scans[:4], moved(scans[4]), *scans[5:]], SETTINGS), "another recording"),
-        (lambda scans: (scans[:9], SETTINGS), "another recording"),
+        (lambda drive: (drive, OTHER_SETTINGS), "other settings"),
+        (
+            lambda drive: (recorded([*drive.scans[:4], moved(drive.scans[4]), *drive.scans[5:]]), SETTINGS),
+            "another rec",
+        ),
+        (lambda drive: (recorded(drive.scans[:9]), SETTINGS), "another recording"),
+        (lambda drive: (recorded(drive.scans, starts=(5,)), SETTINGS), "another recording"),
     ],
 )
 def test_a_checkpoint_of_another_run_is_refused_with_the_reason(
-    scans: list[Scan], tmp_path: Path, change: Callable[[list[Scan]], tuple[list[Scan], Settings]], says: str
+    scans: list[Scan], tmp_path: Path, change: Callable[[Recording], tuple[Recording, Settings]], says: str
 ) -> None:
     path = tmp_path / "run.checkpoint"
     run(scans[:10], fresh(path))
     with pytest.raises(CheckpointError, match=says):
-        resumed(path, 10, *change(scans))
+        resumed(path, 10, *change(recorded(scans)))
 
 
 @pytest.mark.parametrize(
@@ -161,4 +171,4 @@ def test_a_damaged_or_foreign_file_is_refused_with_the_reason(
     run(scans[:10], fresh(path))
     path.write_text(damage(path.read_text()))
     with pytest.raises(CheckpointError, match=says):
-        resumed(path, 10, scans, SETTINGS)
+        resumed(path, 10, recorded(scans), SETTINGS)
