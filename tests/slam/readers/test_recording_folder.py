@@ -1,6 +1,7 @@
 """Recording folders: facts in degrees become a sensor in radians; unknown facts are refused."""
 
 import math
+import shutil
 from pathlib import Path
 
 import pytest
@@ -55,3 +56,22 @@ def test_a_short_recording_does_not_lose_a_scan_in_silence(tmp_path: Path) -> No
 def test_time_does_not_stand_still(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match=r"line 3: time 1\.000000 does not come after 1\.000000"):
         read_recording_folder(written(tmp_path, FACTS, TABLE.replace("2,0.5", "1,0.5")), True)
+
+
+def test_a_sonar_whose_beam_nobody_measured_tells_it_by_its_arcs(tmp_path: Path) -> None:
+    apartment = Path(__file__).parents[3] / "datasets" / "apartment"
+    shutil.copy(apartment / "readings.csv.gz", tmp_path)
+    facts = (apartment / "recording.toml").read_text().splitlines()
+    kept = [line for line in facts if not line.startswith("half_beam")]
+    (tmp_path / "recording.toml").write_text("\n".join(kept))
+    stated = read_recording_folder(apartment, False).scans[0].sensor
+    told = read_recording_folder(tmp_path, False).scans[0].sensor
+    for metres, angle in told.half_beams:
+        assert 0.5 * stated.half_beam_at(metres) < angle <= stated.half_beam_at(metres)
+
+
+def test_a_sonar_of_too_few_arcs_is_said_to_be_taken_as_it_was_read(tmp_path: Path) -> None:
+    facts = FACTS.replace("half_beam_degrees = 10.0\n", "")
+    recording = read_recording_folder(written(tmp_path, facts, TABLE), False)
+    assert recording.scans[0].sensor.half_beam == 0
+    assert "clean arcs of walls" in str(recording.damaged[-1])
