@@ -1,20 +1,23 @@
 """Matching two sketches: near, when the move is roughly known, and lost, when it is not (Flynn 1988, §4.1).
 
 A knot is what the descriptor says: which of its walls were seen, where they lead, and which side is free. Two faces
-of a thin wall have opposite free sides and are never the same knot.
+of a thin wall have opposite free sides and are never the same knot. A lost match is proposed by constellations of
+knots and by the crossings of long walls, and judged by all walls of both sketches, however it was proposed.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from frontend.agreement import agreement
+from frontend.agreement import Agreement, agreement
 from frontend.constellations import consistent, constellations
 from frontend.joint_compatibility import JointPairs, most_joint_pairs
 from frontend.pair_pose import PairedKnots, pose_of_pairs
 from frontend.primal_sketch import PrimalSketch
-from frontend.rigid_motion import wrap
+from frontend.rigid_motion import transform, wrap
 from frontend.scan import Booleans, Floats, Integers
+from frontend.wall_crossings import poses_of_crossings, wall_crossings
+from frontend.wall_pose import pose_of_walls
 
 
 @dataclass(frozen=True)
@@ -26,10 +29,14 @@ class MatchingSettings:
     wall_gate: float = 0.2  # two views of one wall may differ in direction by this; larger accepts more pairs
     distance_gate: float = 0.15  # two views of one distance between knots may differ by this; larger accepts more
     most_knots: int = 15  # knots of each sketch that take part, surest first; larger is slower and finds more
-    most_poses: int = 30  # constellations whose pose is verified, largest first; larger is slower and misses less
-    least_clique: int = 3  # pairs a constellation needs, walls agreeing; larger accepts fewer and surer matches
-    least_support: float = 0.5  # share of walls in common view that must coincide; larger accepts fewer poses
-    most_contradiction: float = 0.15  # share of walls that may stand in free space; larger accepts more poses
+    most_poses: int = 30  # constellations whose pose is judged, largest first; larger is slower and misses less
+    contradiction_worth: float = 3.0  # metres laid that a metre in free space outweighs; larger prefers cautious poses
+    most_contradiction: float = 0.1  # share of walls that may stand in free space; larger accepts more poses
+    least_overlap: float = 0.3  # share of all walls of both that must be laid; larger asks for views closer together
+    least_fixing: float = 1.0  # metres of wall laid that hold the pose where it is loosest; larger refuses corridors
+    most_rivalry: float = 0.7  # what a distant pose may reach of the best one's score; larger accepts ambiguous ones
+    rival_distance: float = 0.5  # metres from which on a pose is another; larger sees fewer rivals
+    rival_turn: float = 0.2  # and radians
     wall_tolerance: float = 0.12  # metres two views of a wall may lie apart; larger supports coarser poses
     position_noise: float = 0.03  # metres added to every knot; larger forgives worse covariances
 
@@ -39,7 +46,8 @@ class Matches:
     """Which knots agree. pairs: (p, 2) knots of the fixed and the moving sketch.
 
     pose_in_fixed: (3,) of the moving sketch, covariance (3, 3), both None when nothing was accepted;
-    reason: what decided, in one sentence. residual: root mean square distance of the pairs, metres.
+    reason: what decided, in one sentence. residual: root mean square distance of the pairs, metres, nan without any.
+    best_guess: (3,) the likeliest pose even if it was not accepted, None where nothing proposed one.
     """
 
     pairs: Integers
@@ -47,6 +55,7 @@ class Matches:
     covariance: Floats | None
     residual: float
     reason: str
+    best_guess: Floats | None = None
 
 
 def match_near(
@@ -69,42 +78,91 @@ def match_near(
         return _nothing(f"{len(chosen)} of {min(a.size, b.size)} knots agree with the guess: a pose needs two", chosen)
     pose, information, residual = _solved(fixed, moving, chosen, guess, settings)
     reason = f"{len(chosen)} knots agree jointly with the guess, {residual:.3f} m apart"
-    return Matches(chosen, pose, np.asarray(np.linalg.inv(information)), residual, reason)
+    return Matches(chosen, pose, np.asarray(np.linalg.inv(information)), residual, reason, pose)
 
 
 def match_lost(fixed: PrimalSketch, moving: PrimalSketch, settings: MatchingSettings) -> Matches:
-    """The largest constellation of knots both sketches share, without any guess."""
+    """The pose that lays most walls of both sketches on each other without any guess, if nothing rivals it."""
+    by_knots = poses_of_knots(fixed, moving, settings)
+    by_walls = poses_of_crossings(wall_crossings(fixed.lines), wall_crossings(moving.lines), settings.wall_gate)
+    poses = np.vstack([by_knots, by_walls])
+    if not len(poses):
+        knots = f"{np.sum(fixed.landmark)} and {np.sum(moving.landmark)} landmark knots"
+        return _nothing(f"{knots} form no constellation, and no walls of both cross alike")
+    judged = agreement(fixed, moving, poses, settings.wall_tolerance)
+    scores = judged.laid - settings.contradiction_worth * judged.against
+    best = int(np.argmax(scores))
+    pose, information = pose_of_walls(
+        fixed.lines, moving.lines, poses[best], settings.wall_tolerance, settings.position_noise
+    )
+    pairs, residual = coinciding(fixed, moving, pose, settings)
+    seen = (
+        f"{len(pairs)} knots and {judged.laid[best] / 2:.1f} m of wall coincide, "
+        f"{1 - judged.support[best]:.0%} of the walls stand in free space"
+    )
+    refused = _doubt(judged, best, _rivalry(poses, scores, best, settings), _wall_length(fixed, moving), settings)
+    if refused:
+        return Matches(pairs, None, None, residual, f"{seen}: {refused}", pose)
+    return Matches(pairs, pose, np.asarray(np.linalg.inv(information)), residual, seen, pose)
+
+
+def _doubt(judged: Agreement, best: int, rivalry: float, wall: float, settings: MatchingSettings) -> str:
+    """Why the best pose is not accepted, empty where it is. wall: metres of both sketches together."""
+    if 1 - judged.support[best] > settings.most_contradiction:
+        return f"not views of one room, as at most {settings.most_contradiction:.0%} may"
+    if judged.laid[best] < settings.least_overlap * wall:
+        return f"{judged.laid[best] / max(wall, 1e-9):.0%} of all walls, too little in common"
+    if judged.fixing[best] < settings.least_fixing:
+        return f"{judged.fixing[best]:.1f} m of them keep the pose from sliding, {settings.least_fixing} m are needed"
+    if rivalry > settings.most_rivalry:
+        return f"another pose does {rivalry:.0%} as well"
+    return ""
+
+
+def _rivalry(poses: Floats, scores: Floats, best: int, settings: MatchingSettings) -> float:
+    """The best score of a pose elsewhere, as a share of the best one's."""
+    apart = np.hypot(*(poses[:, :2] - poses[best, :2]).T) > settings.rival_distance
+    turned = np.abs(wrap(poses[:, 2] - poses[best, 2])) > settings.rival_turn
+    elsewhere = scores[apart | turned]
+    return float(np.max(elsewhere) / scores[best]) if elsewhere.size and scores[best] > 0 else 0.0
+
+
+def _wall_length(fixed: PrimalSketch, moving: PrimalSketch) -> float:
+    ends = np.concatenate([fixed.lines.ends, moving.lines.ends])
+    return float(np.sum(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)))
+
+
+def poses_of_knots(fixed: PrimalSketch, moving: PrimalSketch, settings: MatchingSettings) -> Floats:
+    """The poses (p, 3) that the largest constellations of knots ask for, the largest first."""
     a, b = surest_landmarks(fixed, settings.most_knots), surest_landmarks(moving, settings.most_knots)
-    i, j = np.nonzero(same_kind(fixed, a, moving, b, settings)) if a.size and b.size else (np.empty(0, int),) * 2
-    if not i.size:
-        return _nothing(f"no alike knots among {a.size} and {b.size}")
+    if not a.size or not b.size:
+        return np.empty((0, 3))
+    i, j = np.nonzero(same_kind(fixed, a, moving, b, settings))
     i, j = a[i], b[j]
     turns = _common_turn(fixed.walls[i], moving.walls[j])
     graph = consistent(fixed.positions[i], moving.positions[j], turns, settings.distance_gate, settings.wall_gate)
     graph &= (i[:, None] != i[None]) & (j[:, None] != j[None])
-    cliques = [c for c in constellations(graph) if c.size > 1 or not np.isnan(turns[c[0]])]
-    if not cliques:
-        return _nothing("no pair of knots gives a direction, and no two agree in their distance")
-    largest = sorted(cliques, key=len, reverse=True)[: settings.most_poses]
-    return _verified(fixed, moving, [np.column_stack([i[c], j[c]]) for c in largest], settings)
+    posed = [c for c in constellations(graph) if c.size > 1 or not np.isnan(turns[c[0]])]
+    largest = sorted(posed, key=len, reverse=True)[: settings.most_poses]
+    found = [_solved(fixed, moving, np.column_stack([i[c], j[c]]), None, settings)[0] for c in largest]
+    return np.array(found).reshape(-1, 3)
 
 
-def _verified(fixed: PrimalSketch, moving: PrimalSketch, found: list[Integers], settings: MatchingSettings) -> Matches:
-    """The constellation whose pose lays the most walls on walls and the fewest in free space, if it is good enough."""
-    solved = [_solved(fixed, moving, pairs, None, settings) for pairs in found]
-    judged = [agreement(fixed, moving, pose, settings.wall_tolerance) for pose, _, _ in solved]
-    scores = [len(pairs) + 4 * support - 8 * against for pairs, (support, against) in zip(found, judged, strict=True)]
-    k = int(np.argmax(scores))
-    pairs, (pose, information, residual), (support, against) = found[k], solved[k], judged[k]
-    seen = (
-        f"{len(pairs)} knots form one constellation, {residual:.3f} m apart; "
-        f"{support:.0%} of the walls coincide, {against:.0%} stand in free space"
-    )
-    if len(pairs) < settings.least_clique:
-        return Matches(pairs, None, None, residual, f"{seen}: {settings.least_clique} pairs are needed")
-    if support < settings.least_support or against > settings.most_contradiction:
-        return Matches(pairs, None, None, residual, f"{seen}: not views of one room")
-    return Matches(pairs, pose, np.asarray(np.linalg.inv(information)), residual, seen)
+def coinciding(
+    fixed: PrimalSketch, moving: PrimalSketch, pose: Floats, settings: MatchingSettings
+) -> tuple[Integers, float]:
+    """The landmark knots (p, 2) that are one at this pose, each other's nearest, and their RMS distance."""
+    a, b = np.flatnonzero(fixed.landmark), np.flatnonzero(moving.landmark)
+    if not a.size or not b.size:
+        return np.empty((0, 2), np.int64), np.nan
+    apart = np.linalg.norm(fixed.positions[a][:, None] - transform(moving.positions[b], pose)[None], axis=2)
+    turned = wrap(fixed.walls[a][:, None] - moving.walls[b][None] - pose[2])
+    alike = same_kind(fixed, a, moving, b, settings) & ~np.any(np.abs(turned) > settings.wall_gate, axis=2)
+    apart = np.where(alike & (apart < settings.distance_gate), apart, np.inf)
+    nearest = np.argmin(apart, axis=1)
+    both = np.isfinite(np.min(apart, axis=1)) & (np.argmin(apart, axis=0)[nearest] == np.arange(a.size))
+    distances = np.min(apart, axis=1)[both]
+    return np.column_stack([a[both], b[nearest[both]]]), float(np.sqrt(np.mean(distances**2))) if both.any() else np.nan
 
 
 def surest_landmarks(sketch: PrimalSketch, most: int) -> Integers:

@@ -3,7 +3,7 @@ import pytest
 from shapely import box
 
 from frontend.matching import MatchingSettings, match_lost, match_near, same_kind
-from frontend.rigid_motion import between
+from frontend.rigid_motion import between, transform
 from frontend.scan import Floats
 from tests.frontend.rooms import FURNISHED, L_ROOM, sketched
 
@@ -52,6 +52,34 @@ def test_different_rooms_are_not_matched() -> None:
     assert matches.pose_in_fixed is None
     assert matches.covariance is None
     assert "%" in matches.reason or "knots" in matches.reason
+
+
+def test_a_room_that_looks_the_same_both_ways_is_not_decided() -> None:
+    room = box(0, 0, 6, 4)
+    matches = match_lost(
+        sketched(room, np.array([3.0, 2.0, 0.0])), sketched(room, np.array([3.4, 2.2, 0.1]), 1), SETTINGS
+    )
+    assert matches.pose_in_fixed is None
+    assert "another pose" in matches.reason
+
+
+def test_a_corridor_says_that_the_pose_could_slide() -> None:
+    dead_end = box(-60, 0, 4, 0.8)
+    here, there = np.array([0.0, 0.4, 0.0]), np.array([0.5, 0.4, 0.1])
+    matches = match_lost(sketched(dead_end, here), sketched(dead_end, there, 1), SETTINGS)
+    assert matches.pose_in_fixed is None
+    assert "sliding" in matches.reason
+
+
+def test_the_knots_of_a_lost_match_coincide_at_its_pose() -> None:
+    here, there = PAIRS[0]
+    fixed, moving = sketched(FURNISHED, here), sketched(FURNISHED, there, 1)
+    matches = match_lost(fixed, moving, SETTINGS)
+    assert matches.pose_in_fixed is not None
+    assert len(matches.pairs) >= 4
+    a, b = matches.pairs.T
+    gaps = np.linalg.norm(fixed.positions[a] - transform(moving.positions[b], matches.pose_in_fixed), axis=1)
+    assert np.all(gaps < SETTINGS.distance_gate)
 
 
 def test_two_faces_of_a_thin_wall_are_never_one_knot() -> None:
