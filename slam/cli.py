@@ -1,35 +1,57 @@
-"""The command line: puts the commands together; a foreseen failure is one sentence and exit code 1."""
+"""The command line: only the command that is called is loaded; a foreseen failure is one sentence and exit code 1."""
 
+import ast
 import sys
+from importlib import import_module
+from pathlib import Path
 
 import typer
 
 from slam.commands.console import err
-from slam.commands.convert import convert
-from slam.commands.doctor import doctor
-from slam.commands.draw import draw
-from slam.commands.floor_plan import floor_plan
-from slam.commands.merge import merge
-from slam.commands.plan import plan
-from slam.commands.score import score
-from slam.commands.simulate import simulate
-from slam.commands.view import view
-from slam.failures import FAILURES
 
-app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
-for command in (merge, score, plan, draw, convert, simulate, floor_plan, view, doctor):
-    app.command()(command)
+COMMANDS = ("merge", "score", "plan", "draw", "view", "convert", "simulate", "floor_plan", "doctor")
 
 
-@app.callback()
+def main() -> None:
+    """Run the command line."""
+    wanted = sys.argv[1].replace("-", "_") if len(sys.argv) > 1 else ""
+    try:
+        command_line(wanted)()
+    except Exception as failure:
+        # Loaded late: what may fail knows every stage.
+        from slam.failures import FAILURES  # noqa: PLC0415
+
+        if not isinstance(failure, FAILURES):
+            raise
+        err.print(f"roomsketch: {' '.join(str(failure).split())}")
+        sys.exit(1)
+
+
+def command_line(wanted: str) -> typer.Typer:
+    """All commands by name and first line; the one that is wanted ready to run.
+
+    A command brings gtsam, numba or matplotlib with it: whoever only asks for help is not made to wait for them.
+    """
+    app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
+    app.callback()(_roomsketch)
+    for name in COMMANDS:
+        if name == wanted:
+            app.command()(getattr(import_module(f"slam.commands.{name}"), name))
+        else:
+            app.command(name.replace("_", "-"), help=_says(name))(_idle)
+    return app
+
+
 def _roomsketch() -> None:
     """From scans to one scored room map, and paths on it."""
 
 
-def main() -> None:
-    """Run the command line; a failure that is foreseen is one sentence on standard error and exit code 1."""
-    try:
-        app()
-    except FAILURES as failure:
-        err.print(f"roomsketch: {' '.join(str(failure).split())}")
-        sys.exit(1)
+def _idle() -> None:
+    """Stand for a command that was not called."""
+
+
+def _says(name: str) -> str:
+    """The docstring of a command, read without running its file."""
+    tree = ast.parse((Path(__file__).parent / "commands" / f"{name}.py").read_text(encoding="utf-8"))
+    functions = (node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == name)
+    return ast.get_docstring(next(functions)) or ""

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from slam.cli import app
+from slam.cli import command_line
 
 HEADER = "time,x,y,heading,range@-10,range@0,range@10\n"
 
@@ -21,6 +21,6 @@ HEADER = "time,x,y,heading,range@-10,range@0,range@10\n"
 def test_scans_without_a_wall_still_make_a_map(tmp_path: Path, rows: str) -> None:
     table = tmp_path / "scans.csv"
     table.write_text(HEADER + rows)
-    result = CliRunner().invoke(app, ["merge", str(table), "--out", str(tmp_path / "map")])
+    result = CliRunner().invoke(command_line("merge"), ["merge", str(table), "--out", str(tmp_path / "map")])
     assert result.exit_code == 0, result.output
     assert (tmp_path / "map" / "map.geojson").exists()

@@ -1,0 +1,34 @@
+import subprocess
+import sys
+
+from slam.cli import COMMANDS
+from tests.stories.command_line import run
+
+HELP = """
+import sys
+from slam.cli import main
+sys.argv = ["roomsketch", "--help"]
+try:
+    main()
+finally:
+    print(sorted({"gtsam", "numba", "matplotlib", "scipy"} & set(sys.modules)))
+"""
+
+
+def test_asking_for_help_loads_no_stage() -> None:
+    told = subprocess.run([sys.executable, "-c", HELP], capture_output=True, text=True, check=True)
+    assert told.stdout.splitlines()[-1] == "[]"
+
+
+def test_every_command_is_listed_and_helps() -> None:
+    listed = run("--help").out
+    for command in COMMANDS:
+        name = command.replace("_", "-")
+        assert name in listed
+        assert f"roomsketch {name}" in run(name, "--help").out
+
+
+def test_an_unknown_command_is_bad_usage() -> None:
+    told = run("mrge")
+    assert told.code == 2
+    assert "No such command 'mrge'" in told.err
