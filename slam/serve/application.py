@@ -35,9 +35,8 @@ MOST_ASKED = 4096  # bytes of a question to the planners
 GONE = 4404  # to a websocket: there is no such run
 
 
-def application(shown: Shown | None, host: str, scratch: Path) -> Starlette:
-    """The web application, which keeps its files in `scratch` and shows a recording or result from the start."""
-    gallery = Gallery(scratch)
+def application(gallery: Gallery, shown: Shown | None, host: str) -> Starlette:
+    """The web application of a gallery, which shows a recording or result from the start."""
 
     @asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncIterator[None]:
@@ -73,7 +72,7 @@ async def _list(request: Request) -> Response:
     gallery: Gallery = request.app.state.gallery
     return JSONResponse(
         {
-            "runs": [{"number": run.number, "name": run.name, "state": run.state} for run in gallery.runs.values()],
+            "runs": [{"number": number, "name": run.name, "state": run.state} for number, run in gallery.runs.items()],
             "planners": list(PLANNERS),
             "files": [{"name": name, "file": one.file, "says": one.says} for name, one in DOWNLOADS.items()],
             "limits": asdict(gallery.limits),

@@ -5,6 +5,7 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
+from slam.failures import FAILURES
 from slam.result_folder import Source
 from slam.serve.growth import Errand, grow
 from slam.serve.replay import replay
@@ -32,7 +33,7 @@ class Gallery:
     def __init__(self, scratch: Path, limits: Limits | None = None) -> None:
         self.scratch, self.limits = scratch, limits or Limits()
         self.runs: dict[int, Run] = {}
-        self.desk = Worker()
+        self.desk = Worker(FAILURES)
         self._turn = asyncio.Semaphore(AT_ONCE)
         self._given = 0
 
@@ -48,10 +49,10 @@ class Gallery:
         number, folder = self.new_place()
         path = shown.source.path
         if shown.is_result:
-            run = self._keep(Run(number, path.resolve().name, path, path))
+            run = self._keep(number, Run(path.resolve().name, path, path, FAILURES))
             run.start(self._turn, None, replay, path, shown.truth)
         else:
-            run = self._keep(Run(number, path.resolve().name, folder.parent / "result", path))
+            run = self._keep(number, Run(path.resolve().name, folder.parent / "result", path, FAILURES))
             run.start(self._turn, None, grow, Errand(shown.source, run.result, shown.truth))
         return run
 
@@ -59,7 +60,7 @@ class Gallery:
         """Merge what was dropped on the page, within the limits."""
         folder = source.path if source.path.is_dir() else source.path.parent
         name = "dropped recording" if source.path.is_dir() else source.path.name
-        run = self._keep(Run(number, name, folder.parent / "result", folder))
+        run = self._keep(number, Run(name, folder.parent / "result", folder, FAILURES))
         errand = Errand(source, run.result, Truth.beside(folder))
         run.start(self._turn, self.limits.seconds_merging, merge_upload, errand, self.limits)
         return run
@@ -70,10 +71,10 @@ class Gallery:
         for run in self.runs.values():
             await run.stop()
 
-    def _keep(self, run: Run) -> Run:
-        self.runs[run.number] = run
-        closed = [old for old in self.runs.values() if old.is_over and old.number > 1]
-        if len(self.runs) > MOST_KEPT and closed:
-            forgotten = self.runs.pop(closed[0].number)
-            shutil.rmtree(self.scratch / f"run-{forgotten.number}", ignore_errors=True)
+    def _keep(self, number: int, run: Run) -> Run:
+        self.runs[number] = run
+        over = [old for old, kept in self.runs.items() if kept.is_over and old > 1]
+        if len(self.runs) > MOST_KEPT and over:
+            del self.runs[over[0]]
+            shutil.rmtree(self.scratch / f"run-{over[0]}", ignore_errors=True)
         return run

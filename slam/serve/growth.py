@@ -9,9 +9,6 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-import numpy as np
-
-from backend.polygon_merging import merge_views
 from slam.mapper import Mapper
 from slam.pipeline import Merged, merged_so_far
 from slam.planning import tour_or_reason
@@ -49,7 +46,7 @@ def grow(errand: Errand) -> Iterator[bytes]:
         yield from looks.look_if_due()
     yield pack("stage", {"says": "solving the graph and merging all views"})
     merged = merged_so_far(mapper, settings)
-    yield from result_messages(merged)
+    yield from result_messages(merged, final=True)
     yield pack("stage", {"says": "planning a tour"})
     report = _written(merged, drive, errand, settings)
     yield report_message(report)
@@ -63,10 +60,10 @@ def opening_message(drive: Recording, scans: int) -> bytes:
     return pack("opening", says)
 
 
-def result_messages(merged: Merged) -> Iterator[bytes]:
-    """Where everything ended up."""
+def result_messages(merged: Merged, *, final: bool) -> Iterator[bytes]:
+    """Where everything is, as now known."""
     yield poses_message(merged.estimate.poses, merged.estimate.covariances)
-    yield room_message(merged.room, len(merged.percepts), merged.estimate.landmarks, final=True)
+    yield room_message(merged.room, len(merged.percepts), merged.estimate.landmarks, final=final)
 
 
 class _Looks:
@@ -81,10 +78,7 @@ class _Looks:
         clock = perf_counter()
         if self._spent > LOOK_SHARE * (clock - self._since):
             return
-        poses = self._mapper.poses
-        room = merge_views([percept.view for percept in self._mapper.percepts], poses, self._settings.merging)
-        yield poses_message(poses)
-        yield room_message(room, len(poses), np.empty((0, 2)), final=False)
+        yield from result_messages(merged_so_far(self._mapper, self._settings), final=False)
         self._spent += perf_counter() - clock
 
 

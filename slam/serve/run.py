@@ -7,7 +7,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from slam.serve.messages import kind_of, pack
-from slam.serve.worker import Task, TaskError, Worker
+from slam.serve.worker import Failures, Task, TaskError, Worker
 
 SUPERSEDED = {"poses", "room"}  # only the newest of these says anything
 
@@ -22,12 +22,15 @@ class State(StrEnum):
 
 
 class Run:
-    """One recording being merged, or one result being shown. result: the folder that merge wrote, or will have."""
+    """One recording being merged, or one result being shown. result: the folder that merge wrote, or will have.
 
-    def __init__(self, number: int, name: str, result: Path, source: Path) -> None:
-        self.number, self.name, self.result, self.source = number, name, result, source
+    source: where the files lie that it is made from. failures: what its task may raise for the page to tell.
+    """
+
+    def __init__(self, name: str, result: Path, source: Path, failures: Failures) -> None:
+        self.name, self.result, self.source = name, result, source
         self.state = State.WAITING
-        self._worker = Worker()
+        self._worker = Worker(failures)
         self._messages: list[bytes | None] = []
         self._newest: dict[str, int] = {}
         self._bell = asyncio.Event()

@@ -12,7 +12,7 @@ import uvicorn
 
 from slam.serve.application import application
 from slam.serve.door import address_of, open_door
-from slam.serve.gallery import Shown
+from slam.serve.gallery import Gallery, Shown
 
 GRACE = 2  # seconds open connections have to end when the server does
 
@@ -23,7 +23,7 @@ def serve(shown: Shown | None, host: str, port: int, opened: Callable[[str], Non
         address = address_of(door, host)
         server = _Announcing(
             uvicorn.Config(
-                application(shown, host, Path(scratch)),
+                application(Gallery(Path(scratch)), shown, host),
                 log_level="error",
                 ws="websockets-sansio",
                 ws_max_size=1024,

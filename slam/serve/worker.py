@@ -12,9 +12,8 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any
 
-from slam.failures import FAILURES
-
 Task = Callable[..., Iterator[Any]]
+Failures = tuple[type[Exception], ...]
 CONTEXT = multiprocessing.get_context("spawn")  # a fork would copy the server's threads and sockets half-alive
 PATIENCE = 2.0  # seconds a process has to end by itself
 
@@ -24,9 +23,10 @@ class TaskError(Exception):
 
 
 class Worker:
-    """One process, started when first needed."""
+    """One process, started when first needed. failures: what a task may raise that is a sentence for the page."""
 
-    def __init__(self) -> None:
+    def __init__(self, failures: Failures) -> None:
+        self._failures = failures
         self._process: BaseProcess | None = None
         self._pipe: Connection | None = None
         self._turn = asyncio.Lock()
@@ -75,7 +75,7 @@ class Worker:
         if self._process is None or self._pipe is None or not self._process.is_alive():
             self.end()
             self._pipe, theirs = CONTEXT.Pipe()
-            self._process = CONTEXT.Process(target=_work, args=(theirs,), daemon=True)
+            self._process = CONTEXT.Process(target=_work, args=(theirs, self._failures), daemon=True)
             self._process.start()
             theirs.close()
         return self._pipe
@@ -94,7 +94,7 @@ def _received(pipe: Connection) -> tuple[str, Any]:
     return said
 
 
-def _work(pipe: Connection) -> None:
+def _work(pipe: Connection, failures: Failures) -> None:
     """The life of the process: tasks come in, what they yield goes out, until the other end is gone."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to the whole group; the server ends its workers itself
     while True:
@@ -105,7 +105,7 @@ def _work(pipe: Connection) -> None:
         try:
             for value in task(*arguments):
                 pipe.send(("value", value))
-        except FAILURES as failure:
+        except failures as failure:
             pipe.send(("failed", " ".join(str(failure).split())))
         except BrokenPipeError:
             return

@@ -110,7 +110,7 @@ function heard(scan) {
 }
 
 function* paintRedrawn(context, scene) {
-  const looks = [[EDGE.REAL, scene.inks.redrawn, 1.1, []], [EDGE.OCCLUSION, scene.inks.filler, 0.8, [2, 2]], [EDGE.NO_RETURN, scene.inks.grid, 0.8, [2, 3]], [EDGE.DOOR_ARC, scene.inks.door, 1.3, []]];
+  const looks = [[EDGE.REAL, scene.inks.redrawn, 1.1, []], [EDGE.OCCLUSION, scene.inks.filler, 0.8, [2, 2]], [EDGE.NO_RETURN, scene.inks.muted, 0.7, [1, 3]], [EDGE.DOOR_ARC, scene.inks.door, 1.3, []]];
   for (const [kind, ink, width, dashes] of looks) {
     context.strokeStyle = ink;
     yield* eachScan(context, scene, 0, (scan) => {

@@ -226,7 +226,7 @@ function showState(book, run) {
   const counted = `scan ${scans.length} of ${book.total}`;
   const words = {
     done: () => `${count} scans · ${room ? `${room.area.toFixed(1)} m² free` : "no map"}`,
-    failed: () => `failed at ${counted}`,
+    failed: () => (scans.length ? `failed after ${counted}` : "failed before the first scan"),
     lost: () => "the server is gone: start it again and reload",
   }[book.ending] ?? (() => (opening ? `${book.stage || "merging"} · ${counted}` : run === null ? "nothing to show yet" : "reading the recording…"));
   element("state").textContent = words();

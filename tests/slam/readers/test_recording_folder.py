@@ -75,3 +75,10 @@ def test_a_sonar_of_too_few_arcs_is_said_to_be_taken_as_it_was_read(tmp_path: Pa
     recording = read_recording_folder(written(tmp_path, facts, TABLE), False)
     assert recording.scans[0].sensor.half_beam == 0
     assert "clean arcs of walls" in str(recording.damaged[-1])
+
+
+@pytest.mark.parametrize("elsewhere", ["/etc/passwd", "../readings.csv", "inner/readings.csv"])
+def test_readings_lie_in_the_folder_and_nowhere_else(tmp_path: Path, elsewhere: str) -> None:
+    facts = f'readings = "{elsewhere}"\n{FACTS}'
+    with pytest.raises(RecordingError, match="may lie outside the folder, but must be a file in it"):
+        read_recording_folder(written(tmp_path, facts, TABLE), False)
