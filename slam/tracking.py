@@ -30,6 +30,10 @@ class TrackingSettings:
     window_radians: float = 0.25
     least_faces: int = 8  # surface points a scan needs to be registered at all
     astray: float = 0.5  # confirmed share of the visible map under which a scan is of another place; larger doubts more
+    pierced: float = (
+        0.25  # share of the visible map seen through that makes it one of another place; larger doubts less
+    )
+    strange: float = 0.6  # if no more of its own surface lies on the map; larger doubts more
     judges: int = 40  # visible faces that this takes; larger doubts less
     narrow: float = 0.05  # radians of half-beam at most that this takes: a wide beam itself sees past edges
 
@@ -82,23 +86,25 @@ def track(percept: Percept, last: Floats, move: Move, recent: list[Faces], setti
             f"only {found.matched:.0%} of {len(percept.surface.points)} surface points lie on the map "
             f"({settings.poor:.0%} needed)"
         )
-        return Placed(guess, by_wheels, found.matched, reason, _astray(percept, seen, settings))
-    astray = _astray(percept, seen, settings)
+        return Placed(guess, by_wheels, found.matched, reason, _astray(percept, found.matched, seen, settings))
+    astray = _astray(percept, found.matched, seen, settings)
     if astray is not None:
         return Placed(guess, by_wheels, found.matched, astray, astray)
     covariance: Floats = np.asarray(np.linalg.inv(found.information + prior.information), np.float64)
     return Placed(found.pose_in_fixed, turned(covariance, -found.pose_in_fixed[2]), found.matched)
 
 
-def _astray(percept: Percept, seen: Visibility, settings: TrackingSettings) -> str | None:
+def _astray(percept: Percept, matched: float, seen: Visibility, settings: TrackingSettings) -> str | None:
     """What of the map it should have seen, and did not: a scan of another place, not one of new ground."""
     if percept.scan.sensor.half_beam > settings.narrow or seen.visible < settings.judges:
         return None
-    if seen.confirmed >= settings.astray:
-        return None
-    return (
-        f"{seen.confirmed:.0%} of {seen.visible} visible faces of the map are confirmed ({settings.astray:.0%} needed)"
-    )
+    if seen.confirmed < settings.astray:
+        limit = f"({settings.astray:.0%} needed)"
+        return f"{seen.confirmed:.0%} of {seen.visible} visible faces of the map are confirmed {limit}"
+    if seen.through > settings.pierced and matched < settings.strange:
+        where = f"and only {matched:.0%} of the surface lies on it ({settings.strange:.0%} needed)"
+        return f"{seen.through:.0%} of the visible map was seen through (limit {settings.pierced:.0%}), {where}"
+    return None
 
 
 def _doubtful(found: Alignment, seen: Visibility, settings: TrackingSettings) -> bool:
