@@ -61,7 +61,7 @@ def _draw_world(axes: Axes, world: World) -> None:
 def _draw_cones(axes: Axes, answer: Answer) -> None:
     if answer.cones:
         outlines = [cone.outline for cone in answer.cones]
-        strength = min(0.12, 4 / len(outlines))
+        strength = min(0.12, 1.2 / len(outlines))
         axes.add_collection(PolyCollection(outlines, facecolors=CONE, alpha=strength, linewidths=0))
         axes.add_collection(
             PolyCollection(outlines, facecolors="none", edgecolors=CONE, alpha=strength, linewidths=0.4)
