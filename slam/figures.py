@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import shapely
@@ -12,12 +13,16 @@ from matplotlib.patches import Ellipse, PathPatch
 from matplotlib.path import Path as Outline
 from shapely import MultiPolygon, Polygon
 
+from backend.contours import as_polygons
 from backend.room_map import MapEdgeKind, RoomMap
 from backend.view import View
 from frontend.contour import Contour, EdgeKind
 from frontend.primal_sketch import KnotKind
 from frontend.rigid_motion import transform
 from frontend.scan import Floats
+from slam.boundary_scores import distances, edges_of
+from slam.figures_of_sensing import sensing_figures
+from slam.map_scores import MapTruth, real_edges
 from slam.perception import Percept
 from slam.story import Story
 
@@ -41,6 +46,8 @@ def draw(story: Story, folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     for name, figure in FIGURES.items():
         figure(story).savefig(folder / f"{name}.png", dpi=DOTS_PER_INCH, bbox_inches="tight")
+    for name, sensed in sensing_figures(story.percepts).items():
+        sensed.savefig(folder / f"{name}.png", dpi=DOTS_PER_INCH, bbox_inches="tight")
 
 
 def raw_boundaries(story: Story) -> Figure:
@@ -93,6 +100,40 @@ def planned_paths(story: Story) -> Figure:
         axes.plot(*poses[0, :2], "o", color=ink, markersize=6)
         axes.plot(*poses[-1, :2], "s", color=ink, markersize=6)
     return _framed(figure, axes, shapely.get_coordinates(story.room.free))
+
+
+def map_errors(room: RoomMap, truth: MapTruth) -> Figure:
+    """The map over the true plan: false free ground, ground missed, and how far off each claimed edge lies."""
+    figure, axes = _sheet("the map against the true plan")
+    for ground, ink, label in (
+        (truth.free, "#eeeeee", "true free ground"),
+        (room.free.intersection(truth.free), FREE, "of it in the map"),
+        (room.free.difference(truth.free), "#d62728", "false free"),
+        (truth.seen.difference(room.free), "#1f5fd0", "missed free"),
+    ):
+        axes.add_patch(
+            _patch(as_polygons(ground), facecolor=ink, edgecolor="none", label=f"{label}, {ground.area:.2f} m²")
+        )
+    edges = real_edges(room)
+    if len(edges):
+        off = distances(edges.mean(axis=1), edges_of(truth.free))
+        walls = LineCollection(list(edges), array=100 * off, cmap="viridis", clim=(0, 20), linewidths=1.6)
+        says: dict[str, Any] = {
+            "label": "claimed edge off the true one (cm)",
+            "extend": "max",
+            "location": "bottom",
+            "shrink": 0.6,
+        }
+        figure.colorbar(axes.add_collection(walls), ax=axes, **says)
+    return _framed(figure, axes, shapely.get_coordinates([room.free, truth.seen]))
+
+
+def draw_errors(room: RoomMap, truth: MapTruth, folder: Path) -> Path:
+    """Write the error picture into `folder` as PNG; where it is."""
+    folder.mkdir(parents=True, exist_ok=True)
+    picture = folder / "7_errors.png"
+    map_errors(room, truth).savefig(picture, dpi=DOTS_PER_INCH, bbox_inches="tight")
+    return picture
 
 
 FIGURES: dict[str, Callable[[Story], Figure]] = {
@@ -212,6 +253,8 @@ def _lines(axes: Axes, pieces: Floats, ink: str, *, label: str = "", style: str 
 
 
 def _patch(shape: Polygon | MultiPolygon, **looks: object) -> PathPatch:
+    if shape.is_empty:
+        return PathPatch(Outline(np.zeros((1, 2))), **looks)
     rings: Iterable[shapely.LinearRing] = [ring for part in _parts(shape) for ring in (part.exterior, *part.interiors)]
     return PathPatch(Outline.make_compound_path(*(Outline(np.asarray(r.coords), closed=True) for r in rings)), **looks)
 

@@ -78,15 +78,20 @@ def map_scores(folder: Path, plan: Path, reference: Path | None) -> Scores:
 
     With true poses only what they could see counts, and the raw readings at our poses are scored beside the map.
     """
-    report, room = read_report(folder), read_room(folder / MAP)
-    truth = _truth(plan, None if reference is None else read_trajectory(reference), report["recording"]["max_range"])
+    room, truth = read_room(folder / MAP), map_truth(folder, plan, reference)
     poses = read_trajectory(folder / TRAJECTORY).poses
-    raw = raw_free_space(recording_of(report).scans, poses)
+    raw = raw_free_space(recording_of(read_report(folder)).scans, poses)
     return {
         "map": asdict(score_map(room, truth)),
         "map aligned": asdict(score_map(moved(room, best_alignment(room, truth)), truth)),
         "raw boundaries": {"iou": overlap(raw, truth.seen), "false_free": raw.difference(truth.free).area},
     }
+
+
+def map_truth(folder: Path, plan: Path, reference: Path | None) -> MapTruth:
+    """The plan, and what of it the sensor of the run could see from the true poses, or all of it without these."""
+    reach = read_report(folder)["recording"]["max_range"]
+    return _truth(plan, None if reference is None else read_trajectory(reference), reach)
 
 
 def raw_free_space(scans: tuple[Scan, ...], poses: Floats) -> BaseGeometry:

@@ -1,5 +1,6 @@
 """What the commands print with: results on standard output, troubles and progress on standard error."""
 
+import math
 from collections.abc import Iterable
 from typing import Any
 
@@ -8,6 +9,12 @@ from rich.progress import track
 from rich.table import Table
 
 from frontend.scan import Scan
+
+NOTHING = {
+    "precision": "none claimed",
+    "recall": "none in truth",
+    "error": "none found",
+}  # by what a figure's name ends in
 
 out = Console(soft_wrap=True, highlight=False)
 err = Console(stderr=True, soft_wrap=True, highlight=False, markup=False)
@@ -22,8 +29,15 @@ def print_values(values: dict[str, Any]) -> None:
     """Print nested figures as one table of names and values."""
     table = Table("figure", "value", box=None)
     for name, value in _flat(values):
-        table.add_row(name, f"{value:.4g}" if isinstance(value, float) else str(value))
+        table.add_row(name, _worded(name, value) if isinstance(value, float) else str(value))
     out.print(table)
+
+
+def _worded(name: str, value: float) -> str:
+    """The number, or in words why there is none."""
+    if not math.isnan(value):
+        return f"{value:.4g}"
+    return next((words for ending, words in NOTHING.items() if name.endswith(ending)), "nothing to measure")
 
 
 def _flat(values: dict[str, Any], prefix: str = "") -> Iterable[tuple[str, Any]]:

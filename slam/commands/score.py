@@ -6,9 +6,12 @@ from typing import Annotated, Any
 
 import typer
 
-from slam.commands.console import print_values
-from slam.result_folder import read_report, write_report
-from slam.scoring import map_scores, pose_scores, relation_scores
+from slam.commands.console import err, print_values
+from slam.figures import draw_errors
+from slam.html_report import write_page
+from slam.result_folder import MAP, read_report, write_report
+from slam.room_file import read_room
+from slam.scoring import map_scores, map_truth, pose_scores, relation_scores
 
 
 def score(
@@ -25,12 +28,15 @@ def score(
     scores: dict[str, Any] = {"counts": report["counts"]}
     if truth is not None:
         scores |= map_scores(result, truth, poses)
+        picture = draw_errors(read_room(result / MAP), map_truth(result, truth, poses), result / "figures")
+        err.print(f"drawn: {picture}")
     if poses is not None:
         scores["poses"] = pose_scores(result, poses)
     if relations is not None:
         scores["relations"] = relation_scores(result, relations)
     report["scores"] |= {name: value for name, value in scores.items() if name != "counts"}
     write_report(result, report)
+    write_page(result)
     if as_json:
         print(json.dumps(read_report(result)["scores"] | {"counts": report["counts"]}))
     else:

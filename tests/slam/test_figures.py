@@ -9,7 +9,8 @@ from shapely import MultiPolygon, Polygon, box
 
 from backend.room_map import Door, MapEdge, MapEdgeKind, Obstacle, RoomMap
 from frontend.scan import Scan, Sensor
-from slam.figures import FIGURES, draw
+from slam.figures import FIGURES, draw, draw_errors, map_errors
+from slam.map_scores import MapTruth
 from slam.perception import FrontendSettings, perceive
 from slam.story import Story
 
@@ -43,7 +44,7 @@ def labels(figure: Figure) -> set[str]:
 
 def test_every_figure_becomes_a_picture(tmp_path: Path) -> None:
     draw(story(5), tmp_path)
-    assert {path.stem for path in tmp_path.iterdir()} == set(FIGURES)
+    assert {path.stem for path in tmp_path.iterdir()} == set(FIGURES) | {"8_before_and_after", "9_scale_space"}
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in tmp_path.iterdir())
 
 
@@ -59,6 +60,19 @@ def test_every_figure_becomes_a_picture(tmp_path: Path) -> None:
 )
 def test_a_figure_names_what_it_shows(name: str, promised: set[str]) -> None:
     assert promised <= labels(FIGURES[name](story(2)))
+
+
+def test_the_error_picture_tells_false_free_ground_from_missed(tmp_path: Path) -> None:
+    free = MultiPolygon([box(-2, -2, 3, 1.5)])
+    truth = MapTruth(free, free, np.empty((0, 2, 2)), ())
+    assert {"false free, 2.00 m²", "missed free, 3.75 m²"} <= labels(map_errors(story(1).room, truth))
+    assert draw_errors(story(1).room, truth, tmp_path).read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_perfect_map_has_an_error_picture_without_errors() -> None:
+    room = story(1).room
+    truth = MapTruth(room.free, room.free, np.empty((0, 2, 2)), ())
+    assert "false free, 0.00 m²" in labels(map_errors(room, truth))
 
 
 def test_a_panel_for_each_of_few_views_and_three_for_many() -> None:

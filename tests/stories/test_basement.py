@@ -62,6 +62,13 @@ def test_the_map_beats_the_raw_boundaries_and_the_scores_are_kept(result: Path) 
     assert scores["map"]["wall_breach"] < 0.03
     assert scores["poses"]["position"]["rmse"] < 0.05
     assert json.loads((result / "report.json").read_text())["scores"]["map"] == scores["map"]
+    assert (result / "figures" / "7_errors.png").exists()
+
+
+def test_a_score_that_cannot_be_is_told_in_words(result: Path) -> None:
+    told = run("score", result, "--truth", BASEMENT / "truth.geojson", "--poses", BASEMENT / "true.tum")
+    assert "none in truth" in told.out
+    assert "nan" not in told.out
 
 
 @pytest.mark.parametrize("planner", ["cones", "configuration-space"])
