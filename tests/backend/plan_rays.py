@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely import Point, Polygon, box
+from shapely import MultiPolygon, Point, Polygon, box
 from shapely.affinity import rotate
 
 from backend.contours import as_polygons
@@ -175,7 +175,7 @@ def view_from_ranges(bearings: Floats, ranges: Floats, rays: Rays) -> View:
     return View(points, kinds.astype(np.uint8), spread, np.zeros(2), np.empty((0, 2, 2)))
 
 
-def seen_from(plan: Plan, poses: Floats, max_range: float) -> Polygon:
+def seen_from(plan: Plan, poses: Floats, max_range: float) -> MultiPolygon:
     """The part of the plan's free space in sight of the true poses: rays just beside every corner, and some between."""
     segments = segments_of(plan.free)
     between = np.linspace(-np.pi, np.pi, 120, endpoint=False)
@@ -188,7 +188,7 @@ def seen_from(plan: Plan, poses: Floats, max_range: float) -> Polygon:
         ring = ranges[:, None] * np.stack([np.cos(bearings), np.sin(bearings)], axis=1)
         seen.append(shapely.make_valid(Polygon(ring + pose[:2])).simplify(1e-4))
     whole = shapely.make_valid(shapely.union_all(seen)).intersection(plan.free)
-    return max(as_polygons(whole).geoms, key=lambda part: part.area)
+    return MultiPolygon([part for part in as_polygons(whole).geoms if part.area > 1e-3])
 
 
 def scattered_poses(plan: Plan, count: int, rng: np.random.Generator) -> Floats:

@@ -15,6 +15,7 @@ from planners.world import World
 
 Floats = NDArray[np.float64]
 RADIUS = 0.15
+INSET = 0.05  # metres the safety layer keeps off: places that are not joined so far off walls are not asked for
 PAIRS = 12  # starts and goals per map
 
 
@@ -34,12 +35,13 @@ class Paths:
 def paths_on(layer: MultiPolygon, true_free: BaseGeometry, seen: BaseGeometry, rng: np.random.Generator) -> Paths:
     """Paths between random places of seen ground on a map's layer, against the same robot's on the true plan."""
     places = _places(seen.buffer(-RADIUS - 0.15), 2 * PAIRS, rng)
-    ours, truth = _space(layer), _space(MultiPolygon(list(shapely.get_parts(true_free))))
+    ours, truth = _space(layer), _space(_polygons(true_free))
+    inset = _space(_polygons(true_free.buffer(-INSET, join_style="mitre")))
     asked = found = through = 0
     lengths = []
     for start, goal in zip(places[::2], places[1::2], strict=True):
         exact = _shortest(truth, start, goal)
-        if exact is None:
+        if exact is None or _shortest(inset, start, goal) is None:
             continue
         asked += 1
         path = _shortest(ours, start, goal)
@@ -48,6 +50,10 @@ def paths_on(layer: MultiPolygon, true_free: BaseGeometry, seen: BaseGeometry, r
             through += not shapely.covers(true_free, path)
             lengths.append(path.length / exact.length)
     return Paths(asked, found, through, tuple(lengths))
+
+
+def _polygons(shape: BaseGeometry) -> MultiPolygon:
+    return MultiPolygon(list(shapely.get_parts(shape)))
 
 
 def _space(free: MultiPolygon) -> DiscSpace:

@@ -1,6 +1,5 @@
 """Merging: furnished plans with misplaced views, against other ways to merge; order, time and memory."""
 
-import os
 import time
 from collections.abc import Callable
 from typing import Any
@@ -16,7 +15,7 @@ from backend.room_map import MapEdge, MapEdgeKind, RoomMap
 from slam.map_scores import MapScores, MapTruth, score_map
 from tests.backend.plan_rays import Rays, furnished_plan, misplaced, scattered_poses, view_of
 from tests.benchmarks.merged_paths import Paths, paths_on
-from tests.benchmarks.merging_cases import FLOORS, VIEWS, Case, floor_case, furnished_case
+from tests.benchmarks.merging_cases import VIEWS, Case, furnished_case
 from tests.benchmarks.merging_peers import PEERS
 
 Row = dict[str, Any]
@@ -26,14 +25,12 @@ TARGETS = {"IoU": (0.985, 0.975), "boundary F1 at 5 cm": (0.98, 0.93), "wall bre
 
 
 def rows() -> list[Row]:
-    """All rows of the part; real floors only where their drawings are."""
-    furnished = _against_peers("furnished plans", [furnished_case(number) for number in range(PLANS)])
-    if "ROOMSKETCH_DATA" not in os.environ:
-        return [*furnished, *_by_size()]
-    return [*furnished, *_against_peers("mlstruct floors", [floor_case(floor) for floor in FLOORS]), *_by_size()]
+    """All rows of the part."""
+    return [*against_peers("furnished plans", [furnished_case(number) for number in range(PLANS)]), *_by_size()]
 
 
-def _against_peers(plans: str, cases: list[Case]) -> list[Row]:
+def against_peers(plans: str, cases: list[Case]) -> list[Row]:
+    """Rows of every measure at both noises, beside the other ways to merge."""
     found: list[Row] = []
     for level, (metres, degrees) in enumerate(NOISES):
         rng = np.random.default_rng(77)
