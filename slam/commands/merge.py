@@ -10,6 +10,7 @@ from slam import figures, toml_file
 from slam.checkpoint import CheckpointError, Keeper, resumed
 from slam.commands.console import err, out, print_values, progress
 from slam.commands.plan import announce_compiling, told
+from slam.html_report import write_page
 from slam.logbook import Logbook
 from slam.pipeline import Merged, merge_scans
 from slam.planning import tour_or_reason
@@ -53,6 +54,7 @@ def merge(
         write_result(folder, merged, drive, opinions)
         figures.draw(story, folder / "figures")
         write_report(folder, report)
+        write_page(folder)
     keeper.path.unlink(missing_ok=True)
     for lost in (made for made in merged.estimate.decisions if made.what == "session" and not made.accepted):
         err.print(f"scans {lost.scans[0]} to {lost.scans[-1]}: {lost.reason}")
@@ -63,7 +65,7 @@ def merge(
         out.print(f"{name}: {told(answer)}")
     if trouble is not None:
         out.print(f"no path planned: {trouble}")
-    out.print(f"{to}: map.geojson, trajectory.tum, report.json, settings.toml, figures")
+    out.print(f"{to}: report.html, map.geojson, trajectory.tum, graph.g2o, report.json, settings.toml, figures")
 
 
 def _checkpoint_of(to: Path) -> Path:

@@ -23,6 +23,7 @@ LOOKS = {  # layer: SVG colour, dashes in metres, DXF colour index
     "inferred obstacle": ("#8a6fb3", "0.06 0.04", 6),
     "landmark": ("#c23b80", "", 210),
     "trajectory": ("#0b62a8", "", 5),
+    "path": ("#d55e00", "", 30),
 }
 
 
@@ -58,25 +59,32 @@ def strokes(product: Product) -> Iterator[Stroke]:
 
 
 def write_svg(product: Product, path: Path) -> None:
-    """One group for every layer; an edge's provenance is its tool tip. y points up on the page, one unit is a metre."""
+    """The drawing as a file of its own."""
+    path.write_text('<?xml version="1.0" encoding="utf-8"?>\n' + svg_text(product) + "\n", encoding="utf-8")
+
+
+def svg_text(product: Product, paths: dict[str, Floats] | None = None) -> str:
+    """One group for every layer; an edge's provenance is its tool tip. y points up on the page, one unit is a metre.
+
+    paths: planned ways (p, 3) by name, drawn over the map.
+    """
     low, high = np.reshape(product.room.free.bounds, (2, 2)) + np.array([[-MARGIN], [MARGIN]])
     box = f"{low[0]:.3f} {-high[1]:.3f} {high[0] - low[0]:.3f} {high[1] - low[1]:.3f}"
     page = ElementTree.Element("svg", {"xmlns": "http://www.w3.org/2000/svg", "viewBox": box, "font-size": "0.2"})
     ElementTree.SubElement(page, "title").text = "room map, metres"
-    groups: dict[str, ElementTree.Element] = {}
-    for layer in LOOKS:
-        groups[layer] = ElementTree.SubElement(page, "g", {"id": layer.replace(" ", "-"), **_svg_looks(layer)})
+    groups = {layer: ElementTree.SubElement(page, "g", _svg_looks(layer)) for layer in LOOKS}
     # One path with all rings: holes stay open under the even-odd rule.
     ground = " ".join(_svg_line(stroke) for stroke in strokes(product) if stroke.layer == "free")
     ElementTree.SubElement(groups["free"], "path", {"d": ground})
-    for stroke in strokes(product):
+    ways = [Stroke("path", way[:, :2], False, name) for name, way in (paths or {}).items()]
+    for stroke in [*strokes(product), *ways]:
         if stroke.layer != "free":
             line = ElementTree.SubElement(groups[stroke.layer], "path", {"d": _svg_line(stroke)})
             ElementTree.SubElement(line, "title").text = stroke.says
     for x, y in product.landmarks:
         ElementTree.SubElement(groups["landmark"], "circle", {"cx": f"{x:.4f}", "cy": f"{-y:.4f}", "r": f"{2 * HAIR}"})
     ElementTree.indent(page)
-    ElementTree.ElementTree(page).write(path, encoding="utf-8", xml_declaration=True)
+    return ElementTree.tostring(page, encoding="unicode")
 
 
 def write_dxf(product: Product, path: Path) -> None:
@@ -104,9 +112,10 @@ def _rings(shapes: list[Polygon]) -> list[Floats]:
 
 def _svg_looks(layer: str) -> dict[str, str]:
     colour, dashes, _ = LOOKS[layer]
+    name = {"id": layer.replace(" ", "-")}
     if layer == "free":
-        return {"fill": colour, "fill-rule": "evenodd", "stroke": "none"}
-    looks = {"fill": "none", "stroke": colour, "stroke-width": f"{HAIR}", "stroke-linecap": "round"}
+        return name | {"fill": colour, "fill-rule": "evenodd", "stroke": "none"}
+    looks = name | {"fill": "none", "stroke": colour, "stroke-width": f"{HAIR}", "stroke-linecap": "round"}
     return looks | ({"stroke-dasharray": dashes} if dashes else {})
 
 
