@@ -135,7 +135,7 @@ class FactorGraph:
         self._graph.add(gtsam.BetweenFactorPose2(X(pose), W(wall), gtsam.Pose2(*frame), noise))
 
     def belief(self, pose: int, walls: list[int], landmarks: list[int]) -> tuple[Floats, Floats]:
-        """Mean (d,) and joint covariance (d, d) of a pose, walls (3 each) and landmarks (2 each), in the room's axes."""
+        """Mean (d,), joint covariance (d, d) of a pose, walls (3 each), landmarks (2 each), all in the room's axes."""
         frames = [self._values.atPose2(key) for key in (X(pose), *map(W, walls))]
         points = [self._values.atPoint2(L(index)) for index in landmarks]
         keys = [X(pose), *map(W, walls), *map(L, landmarks)]

@@ -13,10 +13,12 @@ from backend.joint_refinement import Chain, RefinementSettings, Sheaf, refine
 from backend.landmark_map import LandmarkMap, LandmarkSettings
 from backend.loop_closure import Candidate, Drift, LoopSettings, candidates
 from backend.odometry import Move, Odometry, OdometrySettings
+from backend.wheel_noise import driven
 from frontend.local_map import Faces
 from frontend.registration import Alignment
 from frontend.rigid_motion import between, compose
 from frontend.scan import Floats, Integers, Scan
+from slam.arc_tracking import ArcTracking, ArcTrackingSettings
 from slam.keyframes import Keyframe, around
 from slam.logbook import Logbook
 from slam.loops import Tried, VerificationSettings, close_loop
@@ -35,6 +37,7 @@ class MapperSettings:
     loops: LoopSettings = field(default_factory=LoopSettings)
     verification: VerificationSettings = field(default_factory=VerificationSettings)
     relocalisation: RelocalisationSettings = field(default_factory=RelocalisationSettings)
+    arcs: ArcTrackingSettings = field(default_factory=ArcTrackingSettings)
     landmarks: LandmarkSettings = field(default_factory=LandmarkSettings)
     graph: GraphSettings = field(default_factory=GraphSettings)
     refinement: RefinementSettings = field(default_factory=RefinementSettings)
@@ -62,6 +65,7 @@ class Mapper:
         self._unmapped: set[int] = set()
         self._graph = FactorGraph(settings.graph)
         self._landmarks = LandmarkMap(settings.landmarks)
+        self._arcs = ArcTracking(settings.arcs)
         self._drift = Drift()
         self._keyframes: list[Keyframe] = []
         self._relative: list[tuple[int, Floats]] = []  # keyframe and pose in its frame, one per scan
@@ -90,6 +94,8 @@ class Mapper:
         clock = perf_counter()
         if self._cause is not None:
             return self._start(index)
+        if self.percepts[index].arcs is not None:
+            return self._follow(index)
         placed, gap = self._track(index)
         if placed.astray is not None:
             return self._wander(index, placed, gap)
@@ -109,6 +115,27 @@ class Mapper:
             self._settle()
         self._tick("graph", clock)
         return self._keyframes[-1].pose
+
+    def _follow(self, index: int) -> Floats:
+        """Place a scan of a wide beam by its arcs; its pose (3,). Every one of them carries the graph."""
+        percept, old, new = self.percepts[index], self._keyframes[-1], len(self._keyframes)
+        assert percept.arcs is not None
+        wheels = between(old.percept.scan.odometry, percept.scan.odometry)
+        recent = [keyframe.faces for keyframe in self._last(self.settings.arcs.recent)]
+        clock = perf_counter()
+        pose, covariance, recognised = self._arcs.follow(
+            self._graph, percept.arcs, percept.surface, recent, driven(wheels, self.settings.odometry)
+        )
+        self._tick("tracking", clock)
+        self._keyframes.append(Keyframe(index, old.session, percept, pose))
+        self._relative.append((new, np.zeros(3)))
+        self._drift.add(new - 1, new, covariance)
+        for keyframe, moved in zip(self._keyframes, self._graph.poses, strict=True):
+            keyframe.pose = moved
+        if not recognised:
+            reason = f"none of its {len(percept.arcs.ranges)} walls and edges was recognised: placed by the wheels"
+            self._decisions.append(Decision("registration", (index,), accepted=False, reason=reason))
+        return pose
 
     @property
     def poses(self) -> Floats:
@@ -131,7 +158,9 @@ class Mapper:
         clock = perf_counter()
         graph = self._graph.solved()
         covariances = graph.covariances()
-        poses = self._refined(graph.poses)
+        # Outlines that a wide beam smeared must not pull at poses that arcs have placed.
+        by_arcs = any(keyframe.percept.arcs is not None for keyframe in self._keyframes)
+        poses = graph.poses if by_arcs else self._refined(graph.poses)
         self._tick("graph", clock)
         main, owners = self._main_root(), np.array([k for k, _ in self._relative], np.int64)
         roots = np.array([self._sessions.root(keyframe.session) for keyframe in self._keyframes], np.int64)
@@ -142,7 +171,7 @@ class Mapper:
             poses=np.array(told).reshape(-1, 3),
             covariances=covariances[owners],
             landmarks=graph.landmarks,
-            sightings=self._landmarks.counts[graph.landmark_indices],
+            sightings=self._arcs.counts if by_arcs else self._landmarks.counts[graph.landmark_indices],
             keyframes=np.array([keyframe.scan for keyframe in self._keyframes]),
             decisions=(*self._decisions, *self._doubted(graph), *self._left_out(roots[owners], main)),
             calibration=self._calibration(),
@@ -215,7 +244,10 @@ class Mapper:
         self._graph.anchor(number, pose, np.diag([1e-3, 1e-3, 1e-4]) ** 2)
         self._keyframes.append(Keyframe(index, self._sessions.newest, self.percepts[index], pose))
         self._relative.append((number, np.zeros(3)))
-        self._see_landmarks(self.percepts[index], pose)
+        if (arcs := self.percepts[index].arcs) is not None:
+            self._arcs.start(self._graph, number, arcs)
+        else:
+            self._see_landmarks(self.percepts[index], pose)
         return pose
 
     def _track(self, index: int) -> tuple[Placed, str | None]:

@@ -5,12 +5,14 @@ from functools import cached_property
 
 import numpy as np
 
+from backend.arcs import Arcs
 from backend.landmark_map import Knots
 from backend.view import View
 from frontend.contour import Contour, ContourSettings, EdgeKind, filled, outline
 from frontend.fusion import FusedScan, FusionSettings, fuse
 from frontend.landmarks import corners
 from frontend.primal_sketch import PrimalSketch, SketchSettings, sketch
+from frontend.range_arcs import ArcSettings, range_arcs
 from frontend.rigid_motion import transform
 from frontend.scan import Floats, Scan
 from frontend.surface import Surface
@@ -24,6 +26,7 @@ class FrontendSettings:
     fusion: FusionSettings = field(default_factory=FusionSettings)
     contour: ContourSettings = field(default_factory=ContourSettings)
     sketch: SketchSettings = field(default_factory=SketchSettings)
+    arcs: ArcSettings = field(default_factory=ArcSettings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +72,18 @@ class Percept:
             traced.points, traced.edge_kinds == EdgeKind.REAL, traced.spread, self.settings.sketch.landmarks
         )
         return Knots(found.positions, found.turns, found.headings, found.covariances)
+
+    @cached_property
+    def arcs(self) -> Arcs | None:
+        """The regions of constant depth of a sonar that turns with the robot's centre; None for other sensors."""
+        sensor = self.scan.sensor
+        if sensor.kind != "sonar_infrared" or any(sensor.mount) or not self.scan.full_turn:
+            return None
+        found = range_arcs(self.scan, self.settings.arcs)
+        return Arcs(
+            found.ranges, found.spread, found.wall_bearings, found.wall_spreads, found.starts, found.stops,
+            found.edge_bearings, found.edge_spreads, found.firm, found.rising,
+        )  # fmt: skip
 
     @property
     def view(self) -> View:

@@ -218,3 +218,21 @@ def test_after_a_refused_factor_the_graph_still_solves() -> None:
     graph.solve()
     assert worst(graph, true) < 1e-6
     assert graph.loop_residuals() == []
+
+
+def test_a_wall_seen_twice_ties_the_way_towards_it_and_not_along_it() -> None:
+    graph = FactorGraph(GraphSettings())
+    for k in range(2):
+        graph.add_pose(k, np.array([0.5 * k, 0.1 * k, 0.0]))
+    graph.anchor(0, np.zeros(3), np.eye(3) * 1e-8)
+    graph.add_motion(0, 1, np.array([0.5, 0.1, 0.0]), np.diag([0.1, 0.1, 0.01]) ** 2)
+    graph.add_wall(0, np.array([2.0, 0.0, 0.0]))
+    for k, distance in enumerate((2.0, 1.6)):
+        graph.add_wall_sighting(k, 0, np.array([distance, -0.1 * k, 0.0]), np.diag([1e-4, 1e4, 1e-4]))
+    graph.solve()
+    assert np.allclose(graph.poses[1, :2], [0.4, 0.1], atol=0.01)
+    assert np.allclose(graph.walls, [[2.0, 0.0, 0.0]], atol=1e-3)
+    mean, covariance = graph.belief(1, [0], [])
+    assert np.allclose(mean[:3], graph.poses[1])
+    assert np.sqrt(covariance[0, 0]) < 0.02
+    assert np.sqrt(covariance[1, 1]) > 0.09

@@ -1,0 +1,190 @@
+"""Landmarks of range arcs: walls and edges that arcs of several scans agree on, tied into the factor graph.
+
+A new scan is placed by the landmarks it sees again; arcs that nothing explains wait until others agree with them.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from backend.arc_association import AssociationSettings, Belief, Known, Placement, associate
+from backend.arc_births import Birth, BirthSettings, Loose, births
+from backend.arcs import Arcs, seen_wall
+from backend.factor_graph import FactorGraph
+from backend.odometry import Move
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class ArcLandmarkSettings:
+    """How landmarks of arcs are found and found again."""
+
+    association: AssociationSettings = field(default_factory=AssociationSettings)
+    births: BirthSettings = field(default_factory=BirthSettings)
+    reach: float = 5.5  # metres around the robot in which landmarks are looked for; larger looks farther
+    waiting: int = 6  # scans an arc waits for others; larger finds landmarks that are rarely seen
+
+
+@dataclass(frozen=True)
+class _Landmark:
+    """index: among the graph's walls or landmarks. start, stop: what was seen of a wall, leftward of its origin."""
+
+    wall: bool
+    index: int
+    start: float = 0.0
+    stop: float = 0.0
+
+
+class ArcLandmarks:
+    """Grows with the graph: `place` a scan before its pose is added, let it `see` afterwards."""
+
+    def __init__(self, settings: ArcLandmarkSettings) -> None:
+        self.settings = settings
+        self._landmarks: list[_Landmark] = []
+        self._counts: dict[bool, list[int]] = {True: [], False: []}
+        self._waiting: list[tuple[int, Arcs, int]] = []  # pose, and which of its arcs
+
+    @property
+    def counts(self) -> Integers:
+        """How often each edge was seen, (l,), in the order of the graph's landmarks."""
+        return np.array(self._counts[False], np.int64)
+
+    def forget(self) -> None:
+        """What follows was taken elsewhere: nothing of it may be recognised by what was seen so far."""
+        self._landmarks.clear()
+        self._waiting.clear()
+
+    def place(
+        self, graph: FactorGraph, last: int, move: Move, arcs: Arcs, guess: Move | None
+    ) -> tuple[Placement, list[int]]:
+        """Where a scan lies after `move` from the pose `last`, and which landmarks its pairs mean.
+
+        guess: the pose (3,) in the room as something else found it, with covariance in the room's axes.
+        """
+        near = self._near(graph, last)
+        walls = [self._landmarks[k].index for k in near if self._landmarks[k].wall]
+        edges = [self._landmarks[k].index for k in near if not self._landmarks[k].wall]
+        belief = _moved(Belief(*graph.belief(last, walls, edges)), move)
+        if guess is not None:
+            offset = guess.pose - belief.mean[:3]
+            offset[2] = (offset[2] + np.pi) % (2 * np.pi) - np.pi
+            belief = belief.updated(np.arange(3), np.eye(3), offset, guess.covariance)
+        known = [self._known(k, walls, edges) for k in near]
+        return associate(belief, known, arcs, self.settings.association), near
+
+    def see(self, graph: FactorGraph, pose: int, arcs: Arcs, placement: Placement, near: list[int]) -> None:
+        """Tie the newest pose, already in the graph, to what it saw; what nothing explains waits."""
+        for arc, which in placement.pairs:
+            self._tie(graph, pose, arcs, arc, near[which])
+        for arc in placement.loose:
+            if arcs.firm[arc]:
+                self._tie(graph, pose, arcs, arc, self._new_wall(graph, placement.pose, arcs, arc))
+            else:
+                self._waiting.append((pose, arcs, arc))
+        self._waiting = [one for one in self._waiting if pose - one[0] <= self.settings.waiting]
+
+    def conceive(self, graph: FactorGraph, pose: int, turn: float) -> None:
+        """Bear what the waiting arcs agree on. turn: radians by which the newest heading is in doubt."""
+        if not self._waiting:
+            return
+        waiting, poses = self._waiting, graph.poses
+        loose = _loose(waiting, poses)
+        born: set[int] = set()
+        for birth in births(loose, pose, turn, self.settings.births):
+            landmark = self._born(graph, loose, birth)
+            for member in birth.members:
+                seen_from, arcs, arc = waiting[member]
+                self._tie(graph, seen_from, arcs, arc, landmark)
+            born.update(int(member) for member in birth.members)
+        self._waiting = [one for k, one in enumerate(waiting) if k not in born]
+
+    def _near(self, graph: FactorGraph, last: int) -> list[int]:
+        """Landmarks within reach of the last pose: edges by their place, walls by their distance."""
+        place, walls, edges = graph.poses[last, :2], graph.walls, graph.landmarks
+        away = {
+            True: np.abs(np.sum((walls[:, :2] - place) * _normals(walls[:, 2]), axis=1)),
+            False: np.linalg.norm(edges - place, axis=1),
+        }
+        return [k for k, one in enumerate(self._landmarks) if away[one.wall][one.index] < self.settings.reach]
+
+    def _known(self, landmark: int, walls: list[int], edges: list[int]) -> Known:
+        one = self._landmarks[landmark]
+        slot = 3 + 3 * walls.index(one.index) if one.wall else 3 + 3 * len(walls) + 2 * edges.index(one.index)
+        return Known(one.wall, slot, one.start, one.stop)
+
+    def _new_wall(self, graph: FactorGraph, pose: Floats, arcs: Arcs, arc: int) -> int:
+        """A wall that one arc shows surely, its origin at the foot."""
+        heading = pose[2] + arcs.wall_bearings[arc]
+        foot = pose[:2] + arcs.ranges[arc] * np.array([np.cos(heading), np.sin(heading)])
+        return self._add_wall(graph, np.array([*foot, heading]))
+
+    def _born(self, graph: FactorGraph, loose: Loose, birth: Birth) -> int:
+        if not birth.wall:
+            index = len(self._counts[False])
+            graph.add_landmark(index, birth.values)
+            return self._add(_Landmark(False, index))
+        heading, distance = birth.values
+        normal, place = np.array([np.cos(heading), np.sin(heading)]), loose.places[birth.members[-1]]
+        return self._add_wall(graph, np.array([*(place + normal * (distance - normal @ place)), heading]))
+
+    def _add_wall(self, graph: FactorGraph, frame: Floats) -> int:
+        index = len(self._counts[True])
+        graph.add_wall(index, frame)
+        return self._add(_Landmark(True, index, np.inf, -np.inf))
+
+    def _add(self, landmark: _Landmark) -> int:
+        self._landmarks.append(landmark)
+        self._counts[landmark.wall].append(0)
+        return len(self._landmarks) - 1
+
+    def _tie(self, graph: FactorGraph, pose: int, arcs: Arcs, arc: int, landmark: int) -> None:
+        one = self._landmarks[landmark]
+        self._counts[one.wall][one.index] += 1
+        if not one.wall:
+            graph.add_sighting(pose, one.index, *arcs.sighted_edge(arc))
+            return
+        along = seen_wall(graph.poses[pose], graph.walls[one.index])[2]
+        graph.add_wall_sighting(pose, one.index, *arcs.sighted_wall(arc, along))
+        start, stop = along + float(arcs.starts[arc]), along + float(arcs.stops[arc])
+        self._landmarks[landmark] = _Landmark(True, one.index, min(one.start, start), max(one.stop, stop))
+
+
+def _moved(belief: Belief, move: Move) -> Belief:
+    """The belief after the pose made a move (3,) in its own frame, covariance (3, 3) in the axes it started from."""
+    x, y, heading = belief.mean[:3]
+    cosine, sine = np.cos(heading), np.sin(heading)
+    axes = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
+    step = axes @ move.pose
+    slope = np.eye(len(belief.mean))
+    slope[:2, 2] = -step[1], step[0]
+    covariance = slope @ belief.covariance @ slope.T
+    covariance[:3, :3] += axes @ move.covariance @ axes.T
+    mean = belief.mean.copy()
+    mean[:3] = x + step[0], y + step[1], heading + step[2]
+    return Belief(mean, covariance)
+
+
+def _loose(waiting: list[tuple[int, Arcs, int]], poses: Floats) -> Loose:
+    """The waiting arcs as columns, placed at the poses (n, 3) that saw them."""
+    owner = np.array([pose for pose, _, _ in waiting], np.int64)
+    columns = np.array(
+        [
+            (
+                arcs.ranges[k], arcs.wall_bearings[k], arcs.wall_spreads[k], arcs.starts[k], arcs.stops[k],
+                arcs.edge_bearings[k], arcs.edge_spreads[k], arcs.rising[k],
+            )
+            for _, arcs, k in waiting
+        ]
+    ).T  # fmt: skip
+    headings = poses[owner, 2]
+    return Loose(
+        owner, poses[owner, :2], columns[0], waiting[0][1].spread, columns[1] + headings, columns[2], columns[3],
+        columns[4], columns[5] + headings, columns[6], columns[7] > 0,
+    )  # fmt: skip
+
+
+def _normals(headings: Floats) -> Floats:
+    return np.column_stack([np.cos(headings), np.sin(headings)])
