@@ -12,7 +12,6 @@ class Keyframe:
 
     def __init__(self, scan: int, session: int, percept: Percept, pose: Floats) -> None:
         self.scan, self.session, self.percept, self.pose = scan, session, percept, pose
-        self.slipped = False  # whether the wheels disagreed on the way here
         self._placed: tuple[Floats, Faces] | None = None
 
     @property

@@ -9,7 +9,7 @@ import numpy as np
 
 from backend.estimate import Decision, Estimate
 from backend.factor_graph import FactorGraph, GraphSettings
-from backend.joint_refinement import Chain, RefinementSettings, Sheaf, refine
+from backend.joint_refinement import RefinementSettings
 from backend.landmark_map import LandmarkMap, LandmarkSettings
 from backend.loop_closure import Candidate, Drift, LoopSettings, candidates
 from backend.odometry import Move, Odometry, OdometrySettings
@@ -23,6 +23,7 @@ from slam.keyframes import Keyframe, around
 from slam.logbook import Logbook
 from slam.loops import Tried, VerificationSettings, close_loop
 from slam.perception import FrontendSettings, Percept, perceive
+from slam.refining import UNKNOWN, refined, wheels_say
 from slam.relocalisation import RelocalisationSettings, relocalise
 from slam.sessions import Recognition, Sessions
 from slam.tracking import Placed, TrackingSettings, track, turned
@@ -41,7 +42,7 @@ class MapperSettings:
     landmarks: LandmarkSettings = field(default_factory=LandmarkSettings)
     graph: GraphSettings = field(default_factory=GraphSettings)
     refinement: RefinementSettings = field(default_factory=RefinementSettings)
-    keyframe_metres: float = 0.15  # larger keeps fewer keyframes
+    keyframe_metres: float = 0.3  # larger keeps fewer keyframes
     keyframe_radians: float = 0.3  # larger keeps fewer keyframes
     mend_metres: float = 0.05  # disagreement of a loop that mends the graph at once; larger mends less often
     mend_radians: float = 0.01
@@ -70,7 +71,8 @@ class Mapper:
         self._keyframes: list[Keyframe] = []
         self._relative: list[tuple[int, Floats]] = []  # keyframe and pose in its frame, one per scan
         self._decisions: list[Decision] = []
-        self._slipped = False  # whether the wheels disagreed since the last keyframe
+        self._slips: set[int] = set()  # scans on the way to which the wheels disagreed
+        self._slipped = False  # whether they did since the last keyframe
         self._way = np.zeros(2)  # metres and radians since loops were last searched
         self._vain = 0  # searches for another session's places since one was found, and how many to leave out
         self._pause = 0
@@ -158,13 +160,18 @@ class Mapper:
         clock = perf_counter()
         graph = self._graph.solved()
         covariances = graph.covariances()
+<<<<<<< /tmp/lp/h.py
         # Outlines that a wide beam smeared must not pull at poses that arcs have placed.
         by_arcs = any(keyframe.percept.arcs is not None for keyframe in self._keyframes)
         poses = graph.poses if by_arcs else self._refined(graph.poses)
+=======
+        solved = graph.poses
+        poses = self._refined(np.array([compose(solved[k], step) for k, step in self._relative]).reshape(-1, 3))
+>>>>>>> /tmp/lp/tree/slam/mapper.py
         self._tick("graph", clock)
         main, owners = self._main_root(), np.array([k for k, _ in self._relative], np.int64)
         roots = np.array([self._sessions.root(keyframe.session) for keyframe in self._keyframes], np.int64)
-        told = [self._sessions.told(compose(poses[k], step), self._keyframes[k].session) for k, step in self._relative]
+        told = [self._sessions.told(pose, self._keyframes[k].session) for pose, k in zip(poses, owners, strict=True)]
         mapped = roots[owners] == main
         mapped[sorted(self._unmapped)] = False
         return Estimate(
@@ -202,33 +209,21 @@ class Mapper:
         ]
 
     def _refined(self, poses: Floats) -> Floats:
-        """Poses (k, 3) of the keyframes after all faces and the wheels were solved together."""
-        if len(poses) < 2:
-            return poses
-        surfaces = [keyframe.percept.surface for keyframe in self._keyframes]
-        owners = np.repeat(np.arange(len(poses)), [len(surface.points) for surface in surfaces])
-        sheaf = Sheaf(
-            np.concatenate([surface.points for surface in surfaces]),
-            np.concatenate([surface.normals for surface in surfaces]),
-            np.concatenate([surface.spread for surface in surfaces]),
-            owners,
-        )
-        driven = [self._driven(old, new) for old, new in pairwise(self._keyframes)]
-        # Where the wheels slipped, the graph knows the move, and the wheels only how much may be believed.
-        moves = [
-            between(poses[k], poses[k + 1]) if self._keyframes[k + 1].slipped else move.pose
-            for k, move in enumerate(driven)
-        ]
-        chain = Chain(np.array(moves), np.array([move.covariance for move in driven]))
-        return refine(poses, sheaf, chain, self.settings.refinement)
+        """Poses (n, 3) of all scans after their faces and the wheels were solved together; unmapped ones stay."""
+        used = np.setdiff1d(np.arange(len(poses)), sorted(self._unmapped))
+        refined_poses = poses.copy()
+        moves = [self._move(poses, old, new) for old, new in pairwise(used.tolist())]
+        percepts = [self.percepts[scan] for scan in used]
+        refined_poses[used] = refined(poses[used], percepts, moves, self.settings.refinement)
+        return refined_poses
 
-    def _driven(self, old: Keyframe, new: Keyframe) -> Move:
-        """What the wheels say of the way between two keyframes, covariance in the axes of the new one."""
-        if old.session != new.session:
-            return Move(between(old.pose, new.pose), 1e6 * np.eye(3))
-        wheels = between(old.percept.scan.odometry, new.percept.scan.odometry)
-        move = self._odometries[new.session].predict(wheels)
-        return Move(move.pose, turned(move.covariance, -move.pose[2]))
+    def _move(self, poses: Floats, old: int, new: int) -> Move:
+        """What is known of the way between two scans without looking: where the wheels slipped, how little."""
+        session = self._keyframes[self._relative[new][0]].session
+        if self._keyframes[self._relative[old][0]].session != session:
+            return Move(between(poses[old], poses[new]), UNKNOWN)
+        move = wheels_say(self._odometries[session], self.percepts[old], self.percepts[new])
+        return Move(between(poses[old], poses[new]), move.covariance) if new in self._slips else move
 
     def _start(self, index: int) -> Floats:
         """A session begins with this scan."""
@@ -267,6 +262,7 @@ class Mapper:
             placed = again if again.refused is None and again.matched >= self.settings.tracking.good else placed
         if gap is not None:
             self._decisions.append(Decision("gap", (index - 1, index), accepted=placed.refused is None, reason=gap))
+            self._slips.add(index)
             self._slipped = True
         if placed.refused is not None:
             self._decisions.append(Decision("registration", (index,), accepted=False, reason=placed.refused))
@@ -283,6 +279,7 @@ class Mapper:
             f"{np.hypot(*moved[:2]):.2f} m and {np.degrees(moved[2]):.1f}°: {np.sqrt(distance):.1f} sigmas"
         )
         self._decisions.append(Decision("odometry", (index - 1, index), accepted=False, reason=reason))
+        self._slips.add(index)
         self._slipped = True
 
     def _wander(self, index: int, placed: Placed, gap: str | None) -> Floats:
@@ -310,12 +307,11 @@ class Mapper:
         old, new, percept = self._keyframes[-1], len(self._keyframes), self.percepts[index]
         self._keyframes.append(Keyframe(index, old.session, percept, placed.pose))
         self._graph.add_pose(new, placed.pose)
-        self._keyframes[new].slipped = self._slipped
         if placed.refused is None or self._slipped:
             self._graph.add_motion(new - 1, new, step, placed.covariance)
         if not self._slipped:
-            driven = self._driven(old, self._keyframes[new])
-            self._graph.add_motion(new - 1, new, driven.pose, driven.covariance)
+            move = wheels_say(self._odometries[old.session], old.percept, percept)
+            self._graph.add_motion(new - 1, new, move.pose, move.covariance)
         self._slipped = False
         self._drift.add(new - 1, new, placed.covariance)
         self._way += np.array([np.hypot(*step[:2]), abs(step[2])])
