@@ -22,6 +22,9 @@ class DoorEdgeSettings:
 
     confidence: float = 0.99  # of the gate in which a jamb continues a track; larger joins more distant sightings
     range_doubt: float = 0.08  # metres, what the beam leaves of a jamb's range; larger trusts bearings more
+    reveal: float = (
+        0.08  # metres, half a wall: its near or far corner is seen, as one looks; larger trusts bearings less
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,16 +46,21 @@ class DoorEdgeTracks:
         self._opens: list[bool] = []
         self._sightings: list[int] = []
 
-    def add(self, fused: FusedScan, pose: Floats, pose_covariance: Floats) -> None:
-        """The jambs of one scan, placed by the pose (3,) and its covariance (3, 3), both in one frame for all scans."""
-        jambs, doubts = jamb_sightings(fused, pose, pose_covariance, self._settings.range_doubt)
+    def add(self, fused: FusedScan, pose: Floats, pose_covariance: Floats) -> Integers:
+        """The jambs of one scan, placed by the pose (3,) and its covariance (3, 3), both in one frame for all scans.
+
+        The track (2 d,) that each right and left jamb of the scan's d openings continues or begins.
+        """
+        jambs, doubts = jamb_sightings(fused, pose, pose_covariance, self._settings)
         opens = np.tile([True, False], len(fused.openings))
-        for sighting, track in enumerate(self._continued(jambs, doubts, opens)):
+        chosen = self._continued(jambs, doubts, opens)
+        for sighting, track in enumerate(chosen):
             if track is None:
-                self._start(jambs[sighting], doubts[sighting], bool(opens[sighting]))
+                chosen[sighting] = self._start(jambs[sighting], doubts[sighting], bool(opens[sighting]))
             else:
                 self._filters[track].update(jambs[sighting], R=doubts[sighting])
                 self._sightings[track] += 1
+        return np.array(chosen, dtype=np.int64)
 
     @property
     def result(self) -> DoorEdges:
@@ -64,13 +72,14 @@ class DoorEdgeTracks:
             np.array(self._sightings, dtype=np.int64),
         )
 
-    def _start(self, jamb: Floats, doubt: Floats, opens: bool) -> None:
+    def _start(self, jamb: Floats, doubt: Floats, opens: bool) -> int:
         track = KalmanFilter(dim_x=2, dim_z=2)
         track.x, track.P, track.H = jamb, doubt, np.eye(2)
         track.Q, track.F = np.zeros((2, 2)), np.eye(2)  # jambs stand still
         self._filters.append(track)
         self._opens.append(opens)
         self._sightings.append(1)
+        return len(self._filters) - 1
 
     def _continued(self, jambs: Floats, doubts: Floats, opens: Booleans) -> list[int | None]:
         """The track each sighting continues: the assignment of least distance with every pair in the gate."""
@@ -89,16 +98,18 @@ class DoorEdgeTracks:
         return chosen
 
 
-def jamb_sightings(fused: FusedScan, pose: Floats, covariance: Floats, range_doubt: float) -> tuple[Floats, Floats]:
-    """Placed jambs (s, 2) of one scan and their covariances (s, 2, 2): bearing step, range doubt and the pose's own."""
+def jamb_sightings(
+    fused: FusedScan, pose: Floats, covariance: Floats, settings: DoorEdgeSettings
+) -> tuple[Floats, Floats]:
+    """Placed jambs (s, 2) of one scan, and their covariances (s, 2, 2): of bearing, range, reveal and the pose."""
     local = fused.jambs.reshape(-1, 2)
     beams = local - fused.origin
     reach = np.linalg.norm(beams, axis=1)
     along = beams / np.maximum(reach, 1e-9)[:, None]
     aside = np.column_stack([-along[:, 1], along[:, 0]])
     step = float(np.median(np.diff(fused.bearings)))
-    deep = range_doubt**2 + float(np.median(fused.spread)) ** 2
-    wide = (reach * step) ** 2 / 12
+    deep = settings.range_doubt**2 + float(np.median(fused.spread)) ** 2
+    wide = (reach * step) ** 2 / 12 + settings.reveal**2
     seen = deep * along[:, :, None] * along[:, None] + wide[:, None, None] * aside[:, :, None] * aside[:, None]
     turn = rotation(pose[2])
     slopes = np.zeros((len(local), 2, 3))

@@ -13,8 +13,10 @@ import numpy as np
 from backend.estimate import Estimate
 from backend.polygon_merging import merge_views
 from backend.room_map import RoomMap
+from frontend.door_edges import DoorEdges
 from frontend.scan import Floats, Scan
 from slam.checkpoint import Keeper
+from slam.door_tracking import sharpened_views
 from slam.mapper import Mapper
 from slam.perception import Percept
 from slam.settings import Settings
@@ -23,10 +25,11 @@ from slam.settings import Settings
 @dataclass(frozen=True, eq=False)
 class Merged:
     """Every intermediate result of a run: the percepts of the scans that stand in the map, the estimate of all scans,
-    the map, whose views are numbered like the percepts, and seconds per stage."""
+    the door edges tracked over them, the map, whose views are numbered like the percepts, and seconds per stage."""
 
     percepts: tuple[Percept, ...]
     estimate: Estimate
+    door_edges: DoorEdges
     room: RoomMap
     timings: dict[str, float]
 
@@ -59,5 +62,7 @@ def merged_so_far(mapper: Mapper, settings: Settings) -> Merged:
     estimate = mapper.result()
     clock = perf_counter()
     mapped = tuple(mapper.percepts[number] for number in np.flatnonzero(estimate.mapped))
-    room = merge_views([percept.view for percept in mapped], estimate.poses[estimate.mapped], settings.merging)
-    return Merged(mapped, estimate, room, {**mapper.timings, "merging": perf_counter() - clock})
+    poses, covariances = estimate.poses[estimate.mapped], estimate.covariances[estimate.mapped]
+    views, door_edges = sharpened_views(mapped, poses, covariances, settings.door_edges)
+    room = merge_views(views, poses, settings.merging)
+    return Merged(mapped, estimate, door_edges, room, {**mapper.timings, "merging": perf_counter() - clock})

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field, replace
 
 from backend.polygon_merging import MergeSettings
+from frontend.door_edges import DoorEdgeSettings
 from slam.mapper import MapperSettings
 from slam.perception import FrontendSettings
 from slam.planning import PlanningSettings
@@ -15,6 +16,7 @@ class Settings:
 
     frontend: FrontendSettings = field(default_factory=FrontendSettings)
     poses: MapperSettings = field(default_factory=MapperSettings)
+    door_edges: DoorEdgeSettings = field(default_factory=DoorEdgeSettings)
     merging: MergeSettings = field(default_factory=MergeSettings)
     planning: PlanningSettings = field(default_factory=PlanningSettings)
 
