@@ -18,6 +18,7 @@ class NextViewSettings:
     raster: float = 0.5  # metres between candidate places; smaller searches finer and longer
     spacing: float = 0.10  # metres between frontier points; smaller counts short frontiers better
     least: float = 0.30  # metres of frontier worth a look; larger stops exploring earlier
+    farthest: float = 6.0  # metres; larger counts on frontier seen from farther away, and searches longer
     way: float = 0.10  # metres of frontier a metre of way must bring; larger stays nearer
 
 
@@ -36,15 +37,37 @@ def next_view(room_map: RoomMap, pose: Floats, reach: float, settings: NextViewS
     places = _places(room_map, settings.raster)
     if not len(frontier) or not len(places):
         return None
-    seen = _sees(room_map, places, (frontier, inward), reach)
-    gain = seen.sum(axis=1) * settings.spacing
-    worth = np.where(gain >= settings.least, gain - settings.way * np.linalg.norm(places - pose[:2], axis=1), -np.inf)
-    best = int(np.argmax(worth))
-    if not np.isfinite(worth[best]):
+    cost = settings.way * np.linalg.norm(places - pose[:2], axis=1)
+    best = _best(room_map, places, cost, (frontier, inward), min(reach, settings.farthest), settings)
+    if best is None:
         return None
-    targets = frontier[seen[best]]
-    ahead = targets.mean(axis=0) - places[best]
-    return NextView(np.array([*places[best], np.arctan2(ahead[1], ahead[0])]), float(gain[best]), targets)
+    place, seen = best
+    ahead = frontier[seen].mean(axis=0) - place
+    gain = float(np.count_nonzero(seen) * settings.spacing)
+    return NextView(np.array([*place, np.arctan2(ahead[1], ahead[0])]), gain, frontier[seen])
+
+
+def _best(
+    room_map: RoomMap,
+    places: Floats,
+    cost: Floats,
+    frontier: tuple[Floats, Floats],
+    reach: float,
+    settings: NextViewSettings,
+) -> tuple[Floats, NDArray[np.bool_]] | None:
+    """The place (2,) that is worth most and what it sees (p,), the most promising places looked at first."""
+    promised = _ahead(places, frontier, reach)
+    bound = promised.sum(axis=1) * settings.spacing - cost
+    best, most = None, -np.inf
+    shapely.prepare(room_map.free)
+    for place in np.argsort(-bound):
+        if bound[place] <= most:
+            break
+        seen = _sees(room_map, places[place], frontier, promised[place])
+        gain = np.count_nonzero(seen) * settings.spacing
+        if gain >= settings.least and gain - cost[place] > most:
+            best, most = (places[place], seen), gain - cost[place]
+    return best
 
 
 def _frontier_points(room_map: RoomMap, spacing: float) -> tuple[Floats, Floats]:
@@ -70,15 +93,20 @@ def _places(room_map: RoomMap, raster: float) -> Floats:
     return np.stack([x[inside], y[inside]], axis=1)
 
 
-def _sees(room_map: RoomMap, places: Floats, frontier: tuple[Floats, Floats], reach: float) -> NDArray[np.bool_]:
-    """Which frontier points (p,) each place (c,) would see through free space, within reach."""
+def _ahead(places: Floats, frontier: tuple[Floats, Floats], reach: float) -> NDArray[np.bool_]:
+    """Which frontier points (p,) lie within reach of each place (c,) and are not seen at a grazing angle."""
     points, inward = frontier
     ray = places[:, None] - points[None]
     distance = np.linalg.norm(ray, axis=2)
-    seen = (distance < reach) & (np.sum(ray * inward[None], axis=2) > 0.2 * distance)
-    place, point = np.nonzero(seen)
-    start = points[point] + 0.03 * inward[point]
-    shapely.prepare(room_map.free)
-    lines = shapely.linestrings(np.stack([start, places[place]], axis=1))
-    seen[place, point] = shapely.covers(room_map.free, lines)
-    return np.asarray(seen)
+    return np.asarray((distance < reach) & (np.sum(ray * inward[None], axis=2) > 0.2 * distance))
+
+
+def _sees(
+    room_map: RoomMap, place: Floats, frontier: tuple[Floats, Floats], promised: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Which of the promised frontier points (p,) the place (2,) sees through free space."""
+    points, inward = (part[promised] for part in frontier)
+    lines = shapely.linestrings(np.stack([points + 0.03 * inward, np.broadcast_to(place, points.shape)], axis=1))
+    seen = promised.copy()
+    seen[promised] = shapely.covers(room_map.free, lines)
+    return seen

@@ -87,6 +87,12 @@ def merged_map(story: Story) -> Figure:
     figure, axes = _sheet("the merged map")
     _draw_room(axes, story.room)
     _draw_drive(axes, story.poses)
+    if story.next_view is not None:
+        look = story.next_view
+        axes.plot(
+            *look.pose[:2], "*", color=FAKE, markersize=13, label=f"look here next: {look.gain:.1f} m of frontier"
+        )
+        axes.plot(*look.frontier.T, ".", color=FAKE, markersize=3)
     axes.plot(*story.landmarks.T, "+", color=LANDMARK, markersize=5, label=f"{len(story.landmarks)} landmarks")
     return _framed(figure, axes, shapely.get_coordinates(story.room.free))
 

@@ -3,8 +3,10 @@
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 import typer
 
+from backend.next_view import NextView
 from planners.compiled import compiling
 from slam import figures, toml_file
 from slam.checkpoint import CheckpointError, Keeper, resumed
@@ -65,7 +67,15 @@ def merge(
         out.print(f"{name}: {told(answer)}")
     if trouble is not None:
         out.print(f"no path planned: {trouble}")
+    out.print(f"next best view: {_told_next(story.next_view)}")
     out.print(f"{to}: report.html, map.geojson, trajectory.tum, graph.g2o, report.json, settings.toml, figures")
+
+
+def _told_next(look: NextView | None) -> str:
+    if look is None:
+        return "none, no frontier is worth a look"
+    x, y, heading = look.pose
+    return f"x {x:.2f} m, y {y:.2f} m, heading {np.degrees(heading):.0f}°, for {look.gain:.1f} m of frontier"
 
 
 def _checkpoint_of(to: Path) -> Path:
