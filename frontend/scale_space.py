@@ -128,6 +128,20 @@ def tracks(space: ScaleSpace, thresholds: Floats) -> Tracks:
     return Tracks(place, first, last)
 
 
+def track_paths(space: ScaleSpace, thresholds: Floats) -> list[Integers]:
+    """For each track, its level and its place there (k, 2), fine to coarse: the nearest extremum of its sign."""
+    found, paths = tracks(space, thresholds), []
+    for place, first, last in zip(found.place, found.first, found.last, strict=True):
+        path, here = [], int(place)
+        for level in range(int(first), int(last) + 1):
+            row = space.turns[level] * np.sign(space.turns[first, place])
+            peaks = np.flatnonzero((row > 0) & (row >= np.append(0.0, row[:-1])) & (row > np.append(row[1:], 0.0)))
+            here = int(peaks[np.argmin(np.abs(peaks - here))])
+            path.append((level, here))
+        paths.append(np.array(path))
+    return paths
+
+
 @compiled
 def follow_extrema(turns: Floats, thresholds: Floats, reaches: Floats) -> tuple[Integers, Integers, Integers]:
     """Place, first and last level (t,) of each track; an extremum joins the nearest one within a sigma above it."""

@@ -3,7 +3,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from frontend.scale_space import scale_space, tracks
+from frontend.scale_space import scale_space, track_paths, tracks
 
 SIGMAS = 0.1 * np.sqrt(2.0) ** np.arange(5)
 
@@ -62,3 +62,12 @@ def test_a_corner_is_one_track_over_all_scales() -> None:
     assert found.first.tolist() == [0, 0]
     assert found.last.tolist() == [4, 4]
     assert np.allclose(space.arc_length[found.place], [3.0, 5.0], atol=0.04)
+
+
+def test_a_corners_track_runs_through_every_scale_without_moving() -> None:
+    walls = np.vstack([np.column_stack([np.linspace(0, 3, 61), np.zeros(61)]),
+                       np.column_stack([np.full(60, 3.0), np.linspace(0.05, 3, 60)])])  # fmt: skip
+    space = scale_space(walls, 0.1 * np.sqrt(2.0) ** np.arange(5), 0.04)
+    (path,) = track_paths(space, np.full(5, 0.4))
+    assert path[:, 0].tolist() == [0, 1, 2, 3, 4]
+    assert np.allclose(space.arc_length[path[:, 1]], 3.0, atol=0.05)
