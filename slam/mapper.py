@@ -160,14 +160,11 @@ class Mapper:
         clock = perf_counter()
         graph = self._graph.solved()
         covariances = graph.covariances()
-<<<<<<< /tmp/lp/h.py
+        solved = graph.poses
+        poses = np.array([compose(solved[k], step) for k, step in self._relative]).reshape(-1, 3)
         # Outlines that a wide beam smeared must not pull at poses that arcs have placed.
         by_arcs = any(keyframe.percept.arcs is not None for keyframe in self._keyframes)
-        poses = graph.poses if by_arcs else self._refined(graph.poses)
-=======
-        solved = graph.poses
-        poses = self._refined(np.array([compose(solved[k], step) for k, step in self._relative]).reshape(-1, 3))
->>>>>>> /tmp/lp/tree/slam/mapper.py
+        poses = poses if by_arcs else self._refined(poses)
         self._tick("graph", clock)
         main, owners = self._main_root(), np.array([k for k, _ in self._relative], np.int64)
         roots = np.array([self._sessions.root(keyframe.session) for keyframe in self._keyframes], np.int64)
