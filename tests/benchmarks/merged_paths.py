@@ -15,13 +15,15 @@ from planners.world import World
 
 Floats = NDArray[np.float64]
 RADIUS = 0.15
-INSET = 0.05  # metres the safety layer keeps off: places that are not joined so far off walls are not asked for
+INSET = (
+    0.05  # metres the safety layer keeps off: places that seen ground does not join so far off walls are not asked for
+)
 PAIRS = 12  # starts and goals per map
 
 
 @dataclass(frozen=True)
 class Paths:
-    """asked: pairs joined on the true plan; found: of these on the map; through: that cut a true wall.
+    """asked: pairs joined by seen ground; found: of these on the map; through: that cut a true wall.
 
     lengths: of those found, over the true plan's.
     """
@@ -36,12 +38,12 @@ def paths_on(layer: MultiPolygon, true_free: BaseGeometry, seen: BaseGeometry, r
     """Paths between random places of seen ground on a map's layer, against the same robot's on the true plan."""
     places = _places(seen.buffer(-RADIUS - 0.15), 2 * PAIRS, rng)
     ours, truth = _space(layer), _space(_polygons(true_free))
-    inset = _space(_polygons(true_free.buffer(-INSET, join_style="mitre")))
+    joined = _space(_polygons(seen.buffer(-INSET, join_style="mitre")))
     asked = found = through = 0
     lengths = []
     for start, goal in zip(places[::2], places[1::2], strict=True):
         exact = _shortest(truth, start, goal)
-        if exact is None or _shortest(inset, start, goal) is None:
+        if exact is None or _shortest(joined, start, goal) is None:
             continue
         asked += 1
         path = _shortest(ours, start, goal)
