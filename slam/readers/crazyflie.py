@@ -6,8 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from frontend.scan import Scan, Sensor
+from slam.readers.multi_scans import gathered
 from slam.readers.recording import Recording, RecordingError
 from slam.readers.sieve import LineError, Sieve, in_time, numbers, refuse_impossible
+from slam.trajectory_file import Trajectory
 
 COLUMNS = "t,x,y,z,yaw,right,front,left,back,up"
 BEARINGS = np.radians([-90.0, 0.0, 90.0, 180.0])
@@ -16,7 +18,7 @@ RANGER = Sensor("time_of_flight", max_range=2.0, min_range=0.04, half_beam=math.
 
 
 def read_crazyflie(path: Path, strict: bool) -> Recording:
-    """The flight's scans of four beams; the drone's own drifting estimate is its odometry."""
+    """The flight as multi-scans of its four beams; the drone's own drifting estimate is its odometry."""
     sieve = Sieve(path, strict=strict)
     lines = sieve.lines()
     _, header = next(lines, (1, ""))
@@ -24,7 +26,9 @@ def read_crazyflie(path: Path, strict: bool) -> Recording:
         raise RecordingError(f"{path.name} line 1: the header is {header[:60]!r}, but should be {COLUMNS!r}")
     scans = tuple(sieve.through(lines, in_time(_row)))
     sieve.check()
-    return Recording(path.name.split(".")[0], scans, tuple(sieve.damaged))
+    poses, times = np.array([scan.odometry for scan in scans]), np.array([scan.time for scan in scans])
+    trail = Trajectory(times, poses[:, :2], poses[:, 2])
+    return Recording(path.name.split(".")[0], gathered(scans), tuple(sieve.damaged), odometry=trail)
 
 
 def _row(text: str) -> Scan:
