@@ -1,14 +1,15 @@
 # make map    set up, then map the basement, score it against its truth and plan two paths on it
 # make test   set up, then format, lint, types, import contracts and tests: what .ci/run calls
 # make fix    format and mend what the linter can mend      make lock   pin the dependencies anew
-# make bench  [ONLY=part] measure, print, write build/bench.json      make clean   forget everything made
+# make bench  [ONLY=part] measure, print, write build/bench.json      make docs   build/site
+#                                                         make clean   forget everything made
 
 PYTHON ?= python3
 BIN := .venv/bin
 RECORDING ?= datasets/flynn_basement
 OUT ?= build/map
 
-.PHONY: map test browser fix bench lock clean
+.PHONY: map test browser docs fix bench lock clean
 
 map: .venv/ready
 	$(BIN)/roomsketch merge $(RECORDING) --out $(OUT)
@@ -34,6 +35,12 @@ fix: .venv/ready
 
 bench: .venv/ready
 	$(BIN)/python -m tests.benchmarks $(ONLY)
+
+# The figures of the paper's story are made anew each time; the site is build/site/index.html.
+docs: .venv/ready
+	$(BIN)/roomsketch merge datasets/flynn_basement --out build/basement
+	rm -rf docs/pages/figures && cp -r build/basement/figures docs/pages/figures
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet --config-file docs/mkdocs.yml --site-dir ../build/site
 
 # The lock keeps its pins unless UPGRADE=1; it serves every Python and platform of pyproject.toml and names no index.
 lock: .venv/ready
