@@ -41,13 +41,13 @@ EDGE_STYLES = {
 }
 
 
-def draw(story: Story, folder: Path) -> None:
-    """Write every figure into `folder` as PNG."""
+def draw(story: Story, folder: Path) -> list[str]:
+    """Write every figure that the recording allows into `folder` as PNG; their names."""
     folder.mkdir(parents=True, exist_ok=True)
-    for name, figure in FIGURES.items():
-        figure(story).savefig(folder / f"{name}.png", dpi=DOTS_PER_INCH, bbox_inches="tight")
-    for name, sensed in sensing_figures(story.percepts).items():
-        sensed.savefig(folder / f"{name}.png", dpi=DOTS_PER_INCH, bbox_inches="tight")
+    drawn = {name: figure(story) for name, figure in FIGURES.items()} | sensing_figures(story.percepts)
+    for name, figure in drawn.items():
+        figure.savefig(folder / f"{name}.png", dpi=DOTS_PER_INCH, bbox_inches="tight")
+    return list(drawn)
 
 
 def raw_boundaries(story: Story) -> Figure:

@@ -26,11 +26,11 @@ def sensing_figures(percepts: Sequence[Percept]) -> dict[str, Figure]:
     if not percepts:
         return {}
     view = max(percepts, key=lambda percept: (len(percept.fused.openings), len(percept.knots.positions)))
-    found = {"8_before_and_after": before_and_after(view), "9_scale_space": scale_space_tracks(view)}
+    found = {"8c_before_and_after": before_and_after(view), "8d_scale_space": scale_space_tracks(view)}
     if view.scan.sensor.kind == "sonar_infrared":
-        found["10_beam"] = beam_pattern(view.scan.sensor)
+        found["8a_beam"] = beam_pattern(view.scan.sensor)
     if view.scan.infrared is not None:
-        found["11_codes"] = infrared_codes(view)
+        found["8b_codes"] = infrared_codes(view)
     return found
 
 

@@ -13,6 +13,6 @@ from slam.result_folder import story_of
 
 def draw(result: Annotated[Path, typer.Argument(help="The folder that merge wrote.")]) -> None:
     """Draw the figures of a result again, from its files and its recording."""
-    figures.draw(story_of(result), result / "figures")
+    drawn = figures.draw(story_of(result), result / "figures")
     write_page(result)
-    out.print(f"{result / 'figures'}: {', '.join(figures.FIGURES)}")
+    out.print(f"{result / 'figures'}: {', '.join(drawn)}")

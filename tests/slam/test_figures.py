@@ -44,7 +44,7 @@ def labels(figure: Figure) -> set[str]:
 
 def test_every_figure_becomes_a_picture(tmp_path: Path) -> None:
     draw(story(5), tmp_path)
-    assert {path.stem for path in tmp_path.iterdir()} == set(FIGURES) | {"8_before_and_after", "9_scale_space"}
+    assert {path.stem for path in tmp_path.iterdir()} == set(FIGURES) | {"8c_before_and_after", "8d_scale_space"}
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in tmp_path.iterdir())
 
 

@@ -25,23 +25,23 @@ def words(figure: Figure) -> str:
 
 def test_a_sonar_and_infrared_recording_allows_every_figure(percept: Percept) -> None:
     figures = sensing_figures([percept])
-    assert list(figures) == ["8_before_and_after", "9_scale_space", "10_beam", "11_codes"]
-    assert "openings redrawn" in words(figures["8_before_and_after"])
-    assert "tracks" in words(figures["9_scale_space"])
+    assert list(figures) == ["8c_before_and_after", "8d_scale_space", "8a_beam", "8b_codes"]
+    assert "openings redrawn" in words(figures["8c_before_and_after"])
+    assert "tracks" in words(figures["8d_scale_space"])
 
 
 def test_a_lidar_has_neither_beam_nor_codes() -> None:
     bearings = np.radians(np.arange(-180.0, 180.0, 2.0))
     square = 2 / np.maximum(np.abs(np.cos(bearings)), np.abs(np.sin(bearings)))
     seen = perceive(Scan(bearings, square, Sensor("lidar", 5.0), np.zeros(3), 0.0), FrontendSettings())
-    assert list(sensing_figures([seen])) == ["8_before_and_after", "9_scale_space"]
+    assert list(sensing_figures([seen])) == ["8c_before_and_after", "8d_scale_space"]
 
 
 def test_a_view_without_surface_says_so() -> None:
     bearings = np.radians(np.arange(-180.0, 180.0, 2.0))
     nothing = Scan(bearings, np.full(180, np.inf), Sensor("lidar", 5.0), np.zeros(3), 0.0)
     figures = sensing_figures([perceive(nothing, FrontendSettings())])
-    assert "no surface" in words(figures["9_scale_space"])
+    assert "no surface" in words(figures["8d_scale_space"])
     assert sensing_figures([]) == {}
 
 
