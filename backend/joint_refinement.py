@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array, eye_array
+from scipy.sparse import coo_array, csr_array, eye_array
 from scipy.sparse.linalg import LinearOperator, cg, splu
 
 Floats = NDArray[np.float64]
@@ -72,40 +72,67 @@ def _round(
     placed, facing = _placed(sheaf, poses)
     cells, count = _cells(placed, facing, cell, shift, settings.sectors)
     lines = _lines(placed, facing, cells, count, sheaf, settings)
-    normals = lines.normals[cells]
-    errors = np.einsum("ij,ij->i", placed - lines.centres[cells], normals)
-    weights = lines.kept[cells] / (1 + (errors / np.maximum(settings.width, 2 * sheaf.spread)) ** 2)
-    along = np.einsum("ij,ij->i", placed - lines.centres[cells], np.column_stack([-normals[:, 1], normals[:, 0]]))
-    used = np.flatnonzero(weights > 0)
-    root = np.sqrt(weights[used] / settings.shared_beams) / np.maximum(sheaf.spread[used], settings.finest)
-    jacobian = _jacobian(placed[used], normals[used], poses[sheaf.owner[used]], sheaf.owner[used], len(poses))
-    scaled = jacobian.multiply(root[:, None]).tocsr()
-    basis = _line_basis(cells[used], along[used], root, count)
+    used = np.flatnonzero(lines.kept[cells])
+    cells, owner, spread = cells[used], sheaf.owner[used], sheaf.spread[used]
+    normals, off = lines.normals[cells], placed[used] - lines.centres[cells]
+    errors = np.einsum("ij,ij->i", off, normals)
+    weights = 1 / (1 + (errors / np.maximum(settings.width, 2 * spread)) ** 2)
+    root = np.sqrt(weights / settings.shared_beams) / np.maximum(spread, settings.finest)
+    arm = placed[used] - poses[owner, :2]
+    turn = normals[:, 1] * arm[:, 0] - normals[:, 0] * arm[:, 1]
+    rows = root[:, None] * np.column_stack([normals, turn])
+    basis = _line_basis(cells, normals[:, 0] * off[:, 1] - normals[:, 1] * off[:, 0], root, count)
+    seen = root * errors
+    for k in range(2):
+        seen = seen - basis[:, k] * np.bincount(cells, basis[:, k] * seen, count)[cells]
     wheels, wheel_errors = _wheel_rows(poses, chain)
-    through = basis.T @ scaled
-    seen = root * errors[used]
-    seen = seen - basis @ (basis.T @ seen)
-    gradient = scaled.T @ seen + wheels.T @ wheel_errors
-    refined = poses - _solve(scaled, through, wheels, gradient).reshape(-1, 3)
+    gradient = np.column_stack([np.bincount(owner, rows[:, k] * seen, len(poses)) for k in range(3)]).ravel()
+    own = _own_blocks(rows, owner, len(poses)) + wheels.T @ wheels
+    through = _through_lines(rows, basis, cells, owner, (2 * count, gradient.size))
+    moved = _solve(own, through, gradient + wheels.T @ wheel_errors)
+    refined = poses - moved.reshape(-1, 3)
     refined[:, 2] = np.arctan2(np.sin(refined[:, 2]), np.cos(refined[:, 2]))
     return np.asarray(refined)
 
 
-def _solve(scaled: csr_array, through: csr_array, wheels: csr_array, gradient: Floats) -> Floats:
+def _own_blocks(rows: Floats, owner: Integers, count: int) -> csr_array:
+    """(3k, 3k) what the points say of each pose if all lines were known: a point belongs to one pose."""
+    blocks = np.empty((count, 3, 3))
+    for i in range(3):
+        for j in range(3):
+            blocks[:, i, j] = np.bincount(owner, rows[:, i] * rows[:, j], count)
+    places = np.arange(3 * count).reshape(-1, 3)
+    columns = np.broadcast_to(places[:, None, :], blocks.shape)
+    return csr_array((blocks.ravel(), columns.ravel(), np.arange(0, 9 * count + 1, 3)), shape=(3 * count, 3 * count))
+
+
+def _through_lines(rows: Floats, basis: Floats, cells: Integers, owner: Integers, shape: tuple[int, int]) -> csr_array:
+    """(2c, 3k), its shape, how poses pull at the lines of the cells; what they pull at is no longer known of the poses."""
+    names, pairs = np.unique(cells * (owner.max() + 1) + owner, return_inverse=True)
+    cell, pose = np.divmod(names, owner.max() + 1)
+    values = np.empty((len(names), 2, 3))
+    for i in range(2):
+        for j in range(3):
+            values[:, i, j] = np.bincount(pairs, basis[:, i] * rows[:, j], len(names))
+    line = 2 * cell[:, None, None] + np.arange(2)[:, None] + np.zeros((1, 1, 3), np.int64)
+    place = 3 * pose[:, None, None] + np.arange(3) + np.zeros((1, 2, 1), np.int64)
+    return coo_array((values.ravel(), (line.ravel(), place.ravel())), shape=shape).tocsr()
+
+
+def _solve(own: csr_array, through: csr_array, gradient: Floats) -> Floats:
     """Conjugate gradients on the reduced equations, which are never formed: hundreds of poses may share a face.
 
     The chain of the wheels and each pose's own block make the preconditioner; the first pose stays.
     """
-    # A point belongs to one pose, so all but the shared lines is a band of small blocks: the chain itself.
-    own = (scaled.T @ scaled + wheels.T @ wheels + 1e-9 * eye_array(len(gradient))).tocsc()[3:, 3:]
-    nearly = splu(own)
-    chain, through = own.tocsr(), through[:, 3:]
-    through_t = through.T.tocsr()
+    size = len(gradient)
+    own = (own + 1e-9 * eye_array(size)).tocsr()[3:, 3:]
+    through = through[:, 3:]
+    through_t, nearly = through.T.tocsr(), splu(own.tocsc())
 
     def apply(v: Floats) -> Floats:
-        return np.asarray(chain @ v - through_t @ (through @ v))
+        return np.asarray(own @ v - through_t @ (through @ v))
 
-    shape = (len(gradient) - 3, len(gradient) - 3)
+    shape = (size - 3, size - 3)
     moved, unsettled = cg(
         LinearOperator(shape, matvec=apply),
         gradient[3:],
@@ -114,7 +141,7 @@ def _solve(scaled: csr_array, through: csr_array, wheels: csr_array, gradient: F
         M=LinearOperator(shape, matvec=nearly.solve),
     )
     if unsettled:
-        raise RefinementError(f"the joint refinement of {len(gradient) // 3} poses did not settle in {unsettled} steps")
+        raise RefinementError(f"the joint refinement of {size // 3} poses did not settle in {unsettled} steps")
     return np.concatenate([np.zeros(3), moved])
 
 
@@ -176,24 +203,13 @@ def _lines(
     return _Lines(centres, normals, (views >= settings.least_views) & thin & agree)
 
 
-def _jacobian(placed: Floats, normals: Floats, poses: Floats, owner: Integers, count: int) -> csr_array:
-    """(n, 3k) how each distance changes with its keyframe's x, y and heading."""
-    arm = placed - poses[:, :2]
-    turn = normals[:, 1] * arm[:, 0] - normals[:, 0] * arm[:, 1]
-    values = np.column_stack([normals, turn]).ravel()
-    columns = (3 * owner[:, None] + np.arange(3)).ravel()
-    return csr_array((values, columns, np.arange(0, 3 * len(owner) + 1, 3)), shape=(len(owner), 3 * count))
-
-
-def _line_basis(cells: Integers, along: Floats, root: Floats, count: int) -> csr_array:
-    """(n, 2c) orthonormal columns of what moving and turning each cell's line does to its points."""
+def _line_basis(cells: Integers, along: Floats, root: Floats, count: int) -> Floats:
+    """(n, 2) what moving and turning its cell's line does to each point, as columns of length one in each cell."""
     weights = root**2
     total = np.maximum(np.bincount(cells, weights, count), 1e-12)
     centred = along - (np.bincount(cells, weights * along, count) / total)[cells]
     spread = np.maximum(np.bincount(cells, weights * centred**2, count), 1e-12)
-    values = np.column_stack([root / np.sqrt(total[cells]), root * centred / np.sqrt(spread[cells])]).ravel()
-    columns = (2 * cells[:, None] + np.arange(2)).ravel()
-    return csr_array((values, columns, np.arange(0, 2 * len(cells) + 1, 2)), shape=(len(cells), 2 * count))
+    return np.column_stack([root / np.sqrt(total[cells]), root * centred / np.sqrt(spread[cells])])
 
 
 def _wheel_rows(poses: Floats, chain: Chain) -> tuple[csr_array, Floats]:
