@@ -45,7 +45,8 @@ def true_free_space() -> MultiPolygon:
 
 def test_a_result_holds_map_trajectory_report_settings_and_figures(result: Path) -> None:
     assert {path.name for path in result.iterdir()} == {
-        "map.geojson", "trajectory.tum", "odometry.tum", "graph.g2o", "report.json", "report.html", "settings.toml", "figures",
+        "map.geojson", "trajectory.tum", "odometry.tum", "graph.g2o",
+        "report.json", "report.html", "settings.toml", "figures",
     }  # fmt: skip
     assert len(list((result / "figures").glob("*.png"))) == 10
     assert len(read_trajectory(result / "trajectory.tum").times) == 3
