@@ -344,32 +344,32 @@ class Mapper:
         return self._recognise() or surprise
 
     def _recognise(self) -> bool:
-        """Look for the newest keyframe in the maps of sessions with other frames; whether one of them was joined."""
+        """Look for the newest keyframe in the map of a session with another frame; whether the two were joined."""
         if not self._sessions.apart:
             return False
         self._pause -= 1
         if self._pause >= 0:
             return False
-        # Whoever was looked for in vain is looked for less and less often.
+        # Looked for in vain, it is looked for less and less often; one map at a time keeps the time of a scan bounded.
+        newest, others = self._keyframes[-1], self._sessions.others(self._sessions.newest)
+        root = others[self._vain % len(others)]
         self._vain += 1
         self._pause = self._vain // 10
-        newest = len(self._keyframes) - 1
-        for root in self._sessions.others(self._keyframes[newest].session):
-            old = [k for k, keyframe in enumerate(self._keyframes) if self._sessions.root(keyframe.session) == root]
-            tried = self.logbook.answer(partial(self._tried_place, old))
-            scans = (self._keyframes[old[tried.fixed]].scan, self._keyframes[newest].scan)
-            if isinstance(tried.found, str):
-                self._decisions.append(Decision("place", scans, accepted=False, reason=tried.found))
-                continue
-            pose = between(self._keyframes[old[tried.fixed]].pose, tried.found.pose_in_fixed)
-            found = Recognition(old[tried.fixed], newest, pose, _covariance(tried.found))
-            earlier = self._sessions.confirm(found, self._keyframes)
-            reason = f"{tried.found.matched:.0%} matched, {'as' if earlier else 'not yet'} said by another view"
-            self._decisions.append(Decision("place", scans, accepted=earlier is not None, reason=reason))
-            if earlier is not None:
-                self._join(earlier, found)
-                return True
-        return False
+        old = [k for k, keyframe in enumerate(self._keyframes) if self._sessions.root(keyframe.session) == root]
+        tried = self.logbook.answer(partial(self._tried_place, old))
+        fixed = old[tried.fixed]
+        scans = (self._keyframes[fixed].scan, newest.scan)
+        if isinstance(tried.found, str):
+            self._decisions.append(Decision("place", scans, accepted=False, reason=tried.found))
+            return False
+        pose = between(self._keyframes[fixed].pose, tried.found.pose_in_fixed)
+        found = Recognition(fixed, len(self._keyframes) - 1, pose, _covariance(tried.found))
+        earlier = self._sessions.confirm(found, self._keyframes)
+        reason = f"{tried.found.matched:.0%} matched, {'as' if earlier else 'not yet'} said by another view"
+        self._decisions.append(Decision("place", scans, accepted=earlier is not None, reason=reason))
+        if earlier is not None:
+            self._join(earlier, found)
+        return earlier is not None
 
     def _tried_place(self, old: list[int]) -> Tried:
         settings, places = self.settings, [self._keyframes[k] for k in old]

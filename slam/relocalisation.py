@@ -27,6 +27,7 @@ class RelocalisationSettings:
     matching: MatchingSettings = field(default_factory=MatchingSettings)
     score: float = 0.5  # of the search; larger refuses more
     spacing: float = 1.0  # metres between old keyframes whose knots are compared; larger is faster and misses more
+    compared: int = 40  # of them at most, others the next time; larger is slower and misses less
     proposals: int = 3  # constellations verified, the largest first; larger is slower and misses less
     thinned: float = 0.2  # metres between points that are searched with; larger is faster and coarser
     reach: float = 12.0  # metres of the newest submap around the robot
@@ -59,7 +60,7 @@ def _proposals(
     """Poses (3,) in the old map's frame, the cheap ones first."""
     matched = [
         (keyframe, match_lost(keyframe.percept.sketch, recent[-1].percept.sketch, settings.matching))
-        for keyframe in _spaced(old, settings.spacing)
+        for keyframe in _some(_spaced(old, settings.spacing), settings.compared, recent[-1].scan)
     ]
     posed = [
         (len(match.pairs), compose(keyframe.pose, match.pose_in_fixed))
@@ -93,6 +94,12 @@ def _spaced(keyframes: Sequence[Keyframe], spacing: float) -> list[Keyframe]:
         if not chosen or np.hypot(*(keyframe.pose - chosen[-1].pose)[:2]) >= spacing:
             chosen.append(keyframe)
     return chosen
+
+
+def _some(keyframes: list[Keyframe], count: int, turn: int) -> list[Keyframe]:
+    """At most so many, evenly strewn, others at every turn."""
+    stride = -(-len(keyframes) // count)
+    return keyframes[turn % stride :: stride] if stride > 1 else keyframes
 
 
 def _nearest(pose: Floats, keyframes: Sequence[Keyframe], ahead: float) -> int:
