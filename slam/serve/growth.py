@@ -62,8 +62,9 @@ def opening_message(drive: Recording, scans: int) -> bytes:
 
 def result_messages(merged: Merged, *, final: bool) -> Iterator[bytes]:
     """Where everything is, as now known."""
-    yield poses_message(merged.estimate.poses, merged.estimate.covariances)
-    yield room_message(merged.room, len(merged.percepts), merged.estimate.landmarks, final=final)
+    estimate = merged.estimate
+    yield poses_message(estimate.poses, estimate.covariances, estimate.mapped)
+    yield room_message(merged.room, estimate.mapped, estimate.landmarks, final=final)
 
 
 class _Looks:
@@ -84,7 +85,7 @@ class _Looks:
 
 def _written(merged: Merged, drive: Recording, errand: Errand, settings: Settings) -> dict[str, Any]:
     """The result folder of the run, without figures: these are drawn when somebody takes them. Its report."""
-    paths, trouble = tour_or_reason(merged.room.safety, merged.estimate.poses[0], settings.planning)
+    paths, trouble = tour_or_reason(merged.room.safety, merged.poses[0], settings.planning)
     report = report_of(merged, drive, errand.source, paths) | {"tour": trouble}
     with whole_folder(errand.result) as folder:
         write_result(folder, merged, drive, settings)

@@ -15,7 +15,7 @@ from shapely.geometry.base import BaseGeometry
 
 from backend.room_map import MapEdgeKind, RoomMap
 from frontend.contour import ContourKind, EdgeKind
-from frontend.scan import Floats
+from frontend.scan import Booleans, Floats
 from slam.perception import Percept
 
 Arrays = dict[str, NDArray[Any]]
@@ -77,25 +77,31 @@ def scan_message(index: int, percept: Percept, pose: Floats) -> bytes:
     )
 
 
-def poses_message(poses: Floats, covariances: Floats | None = None) -> bytes:
-    """Where all scans so far were taken (n, 3), and how surely: (n, 3) xx, xy, yy in each robot's own axes."""
+def poses_message(poses: Floats, covariances: Floats | None = None, mapped: Booleans | None = None) -> bytes:
+    """Where all scans so far were taken (n, 3), how surely, and which of them stand in the map.
+
+    doubts: (n, 3) xx, xy, yy in each robot's own axes, where known. mapped: (n,), all of them unless told.
+    """
     doubts = {} if covariances is None else {"doubts": upper(covariances[:, :2, :2])}
-    return pack("poses", {}, {"poses": poses, **doubts})
+    told = np.ones(len(poses), np.uint8) if mapped is None else mapped.astype(np.uint8)
+    return pack("poses", {}, {"poses": poses, "mapped": told, **doubts})
 
 
-def room_message(room: RoomMap, views: int, landmarks: Floats, *, final: bool) -> bytes:
-    """The map as merged from the first `views` scans."""
+def room_message(room: RoomMap, mapped: Booleans, landmarks: Floats, *, final: bool) -> bytes:
+    """The map as merged so far. mapped: (n,) which scans so far are its views; the page counts views like scans."""
+    scans = np.flatnonzero(mapped)
     edges = room.edges
     spreads = np.array([edge.spread if np.isfinite(edge.spread) else -1.0 for edge in edges])
     says = {
-        "views": views,
+        "views": len(mapped),
         "final": final,
         "area": room.free.area,
         "doors": [
-            {"name": door.name, "confidence": door.confidence, "views": door.views.tolist()} for door in room.doors
+            {"name": door.name, "confidence": door.confidence, "views": scans[door.views].tolist()}
+            for door in room.doors
         ],
         "obstacles": [
-            {"inferred": body.inferred, "support": body.support, "views": body.views.tolist()}
+            {"inferred": body.inferred, "support": body.support, "views": scans[body.views].tolist()}
             for body in room.obstacles
         ],
     }
@@ -108,7 +114,7 @@ def room_message(room: RoomMap, views: int, landmarks: Floats, *, final: bool) -
         "support": np.array([edge.support for edge in edges], np.int64),
         "contradictions": np.array([edge.contradictions for edge in edges], np.int64),
         "spread": spreads,
-        "seenBy": np.concatenate([np.empty(0, np.int64), *(edge.views for edge in edges)]),
+        "seenBy": scans[np.concatenate([np.empty(0, np.int64), *(edge.views for edge in edges)])],
         "seenCount": np.array([edge.views.size for edge in edges], np.int64),
         "jambs": np.array([door.jambs for door in room.doors]).reshape(-1, 4),
         "landmarks": landmarks.reshape(-1, 2),

@@ -6,13 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from frontend.scan import Floats
+from frontend.scan import Scan
 from slam import toml_file
 from slam.perception import perceive
-from slam.readers.recording import Recording, RecordingError
+from slam.readers.recording import RecordingError
 from slam.result_folder import MAP, SETTINGS, TRAJECTORY, read_report, recording_of
 from slam.room_file import points_of_kind, read_features, read_room
-from slam.serve.growth import opening_message
 from slam.serve.messages import pack, poses_message, room_message, scan_message
 from slam.serve.report import report_message
 from slam.serve.truth import Truth, truth_messages
@@ -25,37 +24,34 @@ def replay(result: Path, truth: Truth) -> Iterator[bytes]:
     report, room = read_report(result), read_room(result / MAP)
     poses = read_trajectory(result / TRAJECTORY).poses
     landmarks = points_of_kind(read_features(result / MAP), "landmark")
-    drive = _drive(report, len(poses))
-    yield _opening(report, drive, len(poses))
+    scans = _scans(report, len(poses))
+    yield _opening(report, len(poses))
     yield poses_message(poses)
-    yield room_message(room, len(poses), landmarks, final=True)
+    yield room_message(room, np.ones(len(poses), np.bool_), landmarks, final=True)
     yield report_message(report)
-    if isinstance(drive, Recording):
-        yield from _scans(drive, poses, toml_file.load(result / SETTINGS, Settings))
-        yield from truth_messages(truth, result, room, drive.scans)
-    else:
-        yield pack("note", {"says": f"The scans cannot be shown: {drive}."})
+    if isinstance(scans, str):
+        yield pack("note", {"says": f"The scans cannot be shown: {scans}."})
+        return
+    settings = toml_file.load(result / SETTINGS, Settings)
+    for index, (scan, pose) in enumerate(zip(scans, poses, strict=True)):
+        yield scan_message(index, perceive(scan, settings.frontend), np.asarray(pose))
+    yield from truth_messages(truth, result, room, scans)
 
 
-def _drive(report: dict[str, Any], poses: int) -> Recording | str:
-    """The recording, or why its scans cannot be shown: a map is worth showing without them."""
+def _scans(report: dict[str, Any], poses: int) -> tuple[Scan, ...] | str:
+    """The scans that stand in the map, or why they cannot be shown: a map is worth showing without them."""
     try:
         drive = recording_of(report)
     except RecordingError as reason:
         return str(reason)
-    if len(drive.scans) != poses:
-        return f"the result has {poses} poses, but its recording now has {len(drive.scans)} scans"
-    return drive
+    left_out = set(report.get("left_out", ()))
+    scans = tuple(scan for number, scan in enumerate(drive.scans) if number not in left_out)
+    if len(scans) != poses:
+        return f"the result has {poses} poses, but its recording now has {len(scans)} scans for them"
+    return scans
 
 
-def _opening(report: dict[str, Any], drive: Recording | str, scans: int) -> bytes:
-    if isinstance(drive, Recording):
-        return opening_message(drive, scans)
+def _opening(report: dict[str, Any], scans: int) -> bytes:
     told = report["recording"]
     says = {"name": told["name"], "scans": scans, "sensor": told["sensor"], "reach": told["max_range"]}
     return pack("opening", says)
-
-
-def _scans(drive: Recording, poses: Floats, settings: Settings) -> Iterator[bytes]:
-    for index, (scan, pose) in enumerate(zip(drive.scans, poses, strict=True)):
-        yield scan_message(index, perceive(scan, settings.frontend), np.asarray(pose))

@@ -7,6 +7,7 @@ export class Book {
     this.total = 0;          // scans there will be
     this.scans = [];         // one message each, in their order
     this.poses = null;       // (n, 3) flat, newest for all; null until the first are told
+    this.mapped = [];        // which of them stand in the map; a scan that is not told of yet does
     this.doubts = null;      // (n, 3) flat covariances of places in the robots' axes
     this.room = null;
     this.truth = null;
@@ -21,7 +22,7 @@ export class Book {
     const keep = {
       opening: () => { this.opening = message; this.total = message.scans; },
       scan: () => { this.scans[message.index] = prepared(message); },
-      poses: () => { this.poses = message.poses; this.doubts = message.doubts ?? null; },
+      poses: () => { this.poses = message.poses; this.doubts = message.doubts ?? null; this.mapped = message.mapped; },
       room: () => { this.room = message; this.firstView = firstViews(message); },
       truth: () => { this.truth = message; },
       report: () => { this.report = message; },
@@ -39,6 +40,9 @@ export class Book {
 
   get finished() { return this.room?.final === true; }
 
+  // A scan that is known and not left out of the map, else null.
+  scanAt(index) { return this.mapped[index] === 0 ? null : this.scans[index] ?? null; }
+
   // The pose of a scan: the newest that was told, else where it was believed to be when it was taken.
   poseOf(index) {
     if (this.poses && 3 * index < this.poses.length) return this.poses.subarray(3 * index, 3 * index + 3);
@@ -52,7 +56,7 @@ export class Book {
     for (let i = 0; i < points.length; i += 2) stretch(box, points[i], points[i + 1]);
     const from = this.room ? this.room.views : 0;
     for (let index = from; index < this.scans.length; index++) {
-      if (!this.scans[index]) continue;
+      if (!this.scanAt(index)) continue;
       const pose = this.poseOf(index);
       const cosine = Math.cos(pose[2]), sine = Math.sin(pose[2]), ring = this.scans[index].ring;
       for (let i = 0; i < ring.length; i += 2) {

@@ -72,12 +72,12 @@ function* fillRings(context, scene, name, ink) {
 }
 
 // Points straight into pixels: a hundred thousand of them cost no more than a few strokes.
-function* paintPoints(context, scene, ink, pointsOf) {
+function* paintPoints(context, scene, ink, strength, pointsOf) {
   const { width, height } = context.canvas, size = Math.max(1, Math.round(1.5 * scene.ratio));
   const sheet = new ImageData(width, height), pixels = new Uint32Array(sheet.data.buffer), colour = packed(ink);
   const [scale, , , , right, down] = scene.matrix;
   for (let index = 0; index < scene.shown; index++) {
-    const scan = scene.book.scans[index];
+    const scan = scene.book.scanAt(index);
     if (!scan) continue;
     const points = pointsOf(scan), [x, y, heading] = scene.book.poseOf(index);
     const cosine = Math.cos(heading), sine = Math.sin(heading);
@@ -92,16 +92,17 @@ function* paintPoints(context, scene, ink, pointsOf) {
   const carrier = new OffscreenCanvas(width, height);
   carrier.getContext("2d").putImageData(sheet, 0, 0);
   context.setTransform(1, 0, 0, 1, 0, 0);
+  context.globalAlpha = strength;
   context.drawImage(carrier, 0, 0);
   yield 2000;
 }
 
 function* paintRaw(context, scene) {
-  yield* paintPoints(context, scene, scene.inks.raw, (scan) => (scan.paths.heard ??= heard(scan)));
+  yield* paintPoints(context, scene, scene.inks.raw, 0.85, (scan) => (scan.paths.heard ??= heard(scan)));
 }
 
 function* paintFillers(context, scene) {
-  yield* paintPoints(context, scene, scene.inks.filler, (scan) => scan.fillers);
+  yield* paintPoints(context, scene, scene.inks.filler, 0.4, (scan) => scan.fillers);
 }
 
 // Readings with an echo, two numbers each.
@@ -177,7 +178,7 @@ function* strokeEdges(context, scene, chosen, ink, width, dashes) {
   toWorld(context, scene);
   context.strokeStyle = ink;
   context.lineCap = dashes.length ? "butt" : "round";
-  context.lineWidth = (width * scene.ratio) / scene.scale;
+  context.lineWidth = (width * weight(scene) * scene.ratio) / scene.scale;
   context.setLineDash(dashes.map((dash) => (dash * scene.ratio) / scene.scale));
   context.beginPath();
   for (let edge = 0; edge < room.support.length; edge++) {
@@ -251,16 +252,17 @@ function* paintLandmarks(context, scene) {
 }
 
 function* paintDrive(context, scene) {
-  const { book, shown } = scene, dotted = new Path2D(), path = new Path2D(), size = (1.8 * scene.ratio) / scene.scale;
+  const { book, shown } = scene, dotted = new Path2D(), path = new Path2D(), size = (1.8 * weight(scene) * scene.ratio) / scene.scale;
   toWorld(context, scene);
   context.strokeStyle = context.fillStyle = scene.inks.drive;
-  context.lineWidth = (1.1 * scene.ratio) / scene.scale;
+  context.lineWidth = (1.1 * weight(scene) * scene.ratio) / scene.scale;
   for (let index = 0; index < shown; index++) {
     const pose = book.poseOf(index);
-    if (!pose) continue;
+    if (!pose || book.mapped[index] === 0) continue;
     path.lineTo(pose[0], pose[1]);
     dotted.rect(pose[0] - size, pose[1] - size, 2 * size, 2 * size);
-    if (book.doubts) turnedEllipse(path, pose, book.doubts.subarray(3 * index, 3 * index + 3));
+    const doubt = book.doubts?.subarray(3 * index, 3 * index + 3);
+    if (doubt && 2 * Math.sqrt(doubt[0] + doubt[2]) > 2 * size) turnedEllipse(path, pose, doubt); // else the dot hides it
   }
   context.globalAlpha = 0.8;
   context.stroke(path);
@@ -288,6 +290,7 @@ function* paintTruth(context, scene) {
   context.beginPath();
   for (let index = 0; index < Math.min(scene.shown, (truth.places?.length ?? 0) / 2); index++) {
     const pose = scene.book.poseOf(index);
+    if (scene.book.mapped[index] === 0) continue;
     context.moveTo(truth.places[2 * index], truth.places[2 * index + 1]);
     context.lineTo(pose[0], pose[1]);
   }
@@ -317,7 +320,7 @@ function* eachScan(context, scene, first, draw) {
   const [a, b, c, d, e, f] = scene.matrix;
   let drawn = 0;
   for (let index = first; index < scene.shown; index++) {
-    const scan = scene.book.scans[index];
+    const scan = scene.book.scanAt(index);
     if (!scan) continue;
     const [x, y, heading] = scene.book.poseOf(index), cosine = Math.cos(heading), sine = Math.sin(heading);
     context.setTransform(a, b, c, d, e, f);
@@ -327,6 +330,9 @@ function* eachScan(context, scene, first, draw) {
   }
   yield drawn;
 }
+
+// Lines grow thinner where much of the world is on the screen.
+function weight({ scale, ratio }) { return Math.min(1, Math.max(0.5, scale / ratio / 40)); }
 
 function toWorld(context, scene) { context.setTransform(...scene.matrix); }
 

@@ -41,12 +41,15 @@ export class Painter {
 
   begin() {
     this.asked = false;
-    const { canvas } = this.back, margin = 2 * MARGIN;
-    canvas.width = Math.round((this.camera.width + margin) * this.ratio);
-    canvas.height = Math.round((this.camera.height + margin) * this.ratio);
+    const { canvas } = this.back;
+    const width = Math.round((this.camera.width + 2 * MARGIN) * this.ratio), height = Math.round((this.camera.height + 2 * MARGIN) * this.ratio);
+    const context = canvas.getContext("2d");
+    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height }); // which clears it
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.clearRect(0, 0, width, height);
     this.back.camera = { ...this.camera };
     const view = { matrix: this.camera.matrix(this.ratio, MARGIN), scale: this.camera.scale * this.ratio, ratio: this.ratio };
-    this.work = this.paint(canvas.getContext("2d"), view);
+    this.work = this.paint(context, view);
   }
 
   goOn(gap) {

@@ -23,6 +23,8 @@ ROOM = RoomMap(
     leaks=np.empty((0, 2)),
 )
 
+MAPPED = np.array([True, False, True, True, True, True, True])
+
 
 @settings(deadline=None, max_examples=40)
 @given(
@@ -52,16 +54,16 @@ def test_arrays_lie_where_a_browser_may_look_at_them() -> None:
 
 
 def test_a_room_keeps_its_edges_with_their_provenance() -> None:
-    head, found = unpack(room_message(ROOM, 6, np.empty((0, 2)), final=True))
-    assert head["kind"] == kind_of(room_message(ROOM, 6, np.empty((0, 2)), final=True)) == "room"
-    assert head["views"] == 6
+    head, found = unpack(room_message(ROOM, MAPPED, np.empty((0, 2)), final=True))
+    assert head["kind"] == kind_of(room_message(ROOM, MAPPED, np.empty((0, 2)), final=True)) == "room"
+    assert head["views"] == 7
     assert head["area"] == 11
     assert found["support"].tolist() == [3, 0]
     assert found["contradictions"].tolist() == [1, 0]
     assert found["spread"].tolist() == [np.float32(0.01), -1]  # no bound is told as −1
-    assert found["seenBy"].tolist() == [0, 2, 5]
+    assert found["seenBy"].tolist() == [0, 3, 6]  # scan 1 stands not in the map
     assert found["seenCount"].tolist() == [3, 0]
-    assert head["obstacles"] == [{"inferred": True, "support": 2, "views": [0, 5]}]
+    assert head["obstacles"] == [{"inferred": True, "support": 2, "views": [0, 6]}]
 
 
 def test_the_rings_of_an_area_rebuild_it() -> None:
