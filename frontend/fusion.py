@@ -143,7 +143,21 @@ def _spikes(scan: Scan, measured: Booleans, settings: FusionSettings) -> Boolean
     after = np.stack([padded[reach + 1 + k : reach + 1 + k + ranges.size] for k in range(reach)])
     nearest_before = np.min(np.where(np.isnan(before), np.inf, before), axis=0)
     nearest_after = np.min(np.where(np.isnan(after), np.inf, after), axis=0)
-    return np.asarray(ranges > np.maximum(nearest_before, nearest_after) + settings.spike_height)
+    beside = np.maximum(nearest_before, nearest_after)
+    spikes = ranges > beside + settings.spike_height
+    spikes[[i for i in np.flatnonzero(spikes) if _clear_to_infrared(int(i), float(beside[i]), scan)]] = False
+    return np.asarray(spikes)
+
+
+def _clear_to_infrared(reading: int, beside: float, scan: Scan) -> bool:
+    """Whether the infrared feels nothing in the whole beam at the range beside a reading: a gap as wide as the beam."""
+    if scan.infrared is None:
+        return False
+    width = int(scan.sensor.half_beam_at(beside) / np.median(np.diff(scan.bearings)))
+    places = reading + np.arange(-width, width + 1)
+    if not scan.full_turn and not (places[0] >= 0 and places[-1] < scan.bearings.size):
+        return False
+    return bool(np.all(scan.infrared[places % scan.bearings.size] % 10 == 0))
 
 
 def _smeared(ranges: Floats, kinds: NDArray[np.uint8], scan: Scan) -> Integers:

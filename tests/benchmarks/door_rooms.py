@@ -4,11 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from shapely import Polygon, box
 from shapely.geometry.base import BaseGeometry
 
 from frontend.contour import ContourSettings, trace
-from frontend.fusion import FusedScan, FusionSettings, fuse
+from frontend.fusion import FusionSettings, fuse
 from frontend.scan import Floats, Scan, Sensor
 from tests.frontend.rooms import first_echoes, true_ranges, turn
 
@@ -29,9 +30,9 @@ class DoorRoom:
     gaps: Floats
 
 
-def door_rooms(count: int, half_beam: float) -> list[DoorRoom]:
+def door_rooms(stop: int, half_beam: float, start: int = 0) -> list[DoorRoom]:
     """The same rooms for every half-beam: 4–6.5 by 3–5 m, one to three doors of 0.7–1 m, perhaps a cupboard."""
-    return [_door_room(np.random.default_rng(seed), half_beam) for seed in range(count)]
+    return [_door_room(np.random.default_rng(seed), half_beam) for seed in range(start, stop)]
 
 
 def judge_doors(room: DoorRoom) -> tuple[int, int, int, int]:
@@ -51,14 +52,22 @@ def _turned(angles: Floats) -> Floats:
 
 def free_space_overlap(room: DoorRoom) -> tuple[float, float, float]:
     """IoU of the fused view with what is visible, that of the raw readings, and the fused view's false free share."""
-    visible = _polygon(room.scan.bearings, np.minimum(room.truth, room.scan.sensor.max_range))
-    raw = _polygon(room.scan.bearings, np.minimum(room.scan.ranges, room.scan.sensor.max_range))
-    ours = _view(fuse(room.scan, FusionSettings()))
-    return _iou(ours, visible), _iou(raw, visible), ours.difference(visible).area / visible.area
+    visible = polar_polygon(np.minimum(room.truth, room.scan.sensor.max_range))
+    raw = polar_polygon(np.minimum(room.scan.ranges, room.scan.sensor.max_range))
+    ours = view_of(room)
+    return overlap(ours, visible), overlap(raw, visible), ours.difference(visible).area / visible.area
 
 
-def _view(fused: FusedScan) -> Polygon:
-    return trace(fused, ContourSettings()).free_space
+def view_of(room: DoorRoom) -> Polygon:
+    """The free space of the fused view."""
+    return trace(fuse(room.scan, FusionSettings()), ContourSettings()).free_space
+
+
+def through_doors(room: DoorRoom) -> NDArray[np.bool_]:
+    """Which bearings (n,) look through a gap of the walls."""
+    middles, widths = np.mean(room.gaps, axis=1), room.gaps[:, 1] - room.gaps[:, 0]
+    off = np.abs(_turned(room.scan.bearings[:, None] - middles[None]))
+    return np.asarray(np.any(off <= widths / 2, axis=1))
 
 
 def _door_room(rng: np.random.Generator, half_beam: float) -> DoorRoom:
@@ -148,9 +157,12 @@ def _is_clear(world: BaseGeometry, pose: Floats, door: Floats, gap: Floats) -> b
     return bool(np.all(beyond > INFRARED) and np.all(before < INFRARED))
 
 
-def _polygon(bearings: Floats, ranges: Floats) -> Polygon:
+def polar_polygon(ranges: Floats) -> Polygon:
+    """The star-shaped polygon of a full turn of ranges (n,)."""
+    bearings = turn(READINGS)
     return Polygon(np.maximum(ranges, 0.01)[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)]))
 
 
-def _iou(a: Polygon, b: Polygon) -> float:
+def overlap(a: BaseGeometry, b: BaseGeometry) -> float:
+    """Intersection over union."""
     return float(a.intersection(b).area / a.union(b).area)

@@ -105,6 +105,19 @@ def test_a_lone_far_reading_of_a_wide_beam_is_a_specular_loss() -> None:
     assert np.all(fused.ranges == 2.0)
 
 
+def test_a_lone_far_reading_through_a_gap_that_the_infrared_finds_clear_is_no_loss() -> None:
+    """20° to each side of one bearing nothing is near, so the beam of 20° passes there and there alone."""
+    infrared = np.full(256, 31, dtype=np.int16)
+    ranges = np.full(256, 2.0)
+    ranges[100] = 7.0
+    blocked = fuse(Scan(turn(256), ranges, SENSOR, np.zeros(3), 0.0, infrared), FusionSettings())
+    infrared[85:116] = 30
+    clear = fuse(Scan(turn(256), ranges, SENSOR, np.zeros(3), 0.0, infrared.copy()), FusionSettings())
+    assert blocked.kinds[100] == ReadingKind.REJECTED
+    assert clear.kinds[100] != ReadingKind.REJECTED
+    assert clear.ranges[100] > 6.9
+
+
 def test_a_scan_of_nothing_but_unusable_readings_claims_nothing() -> None:
     fused = fuse(Scan(turn(64), np.full(64, np.nan), Sensor("lidar", 30.0), np.zeros(3), 0.0), FusionSettings())
     assert np.all(fused.ranges <= 0.011)
