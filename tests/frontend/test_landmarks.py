@@ -48,3 +48,26 @@ def test_a_box_against_the_wall_is_a_bump_of_four_corners() -> None:
 
 def test_a_chain_of_a_few_points_has_no_knots() -> None:
     assert not chain_knots(path([], 0.1, 0.05), 0.01, SETTINGS).turns.size
+
+
+def test_a_niche_in_the_wall_is_a_dent_of_four_corners() -> None:
+    quarter = np.pi / 2
+    points = path([(-quarter, 0.4), (quarter, 0.5), (quarter, 0.4), (-quarter, 2.0)], 2.0, 0.03)
+    knots = chain_knots(noisy(points, 0.005), 0.005, SETTINGS)
+    assert knots.kinds.tolist() == [Primitive.DENT] * 4
+    assert np.allclose(knots.positions, np.array([[2, 0], [2, -0.4], [2.5, -0.4], [2.5, 0]]), atol=0.03)
+
+
+def test_the_end_of_a_screen_is_an_end_of_two_corners() -> None:
+    quarter = np.pi / 2
+    knots = chain_knots(noisy(path([(-quarter, 0.4), (-quarter, 2.0)], 2.0, 0.03), 0.005), 0.005, SETTINGS)
+    assert knots.kinds.tolist() == [Primitive.END] * 2
+    assert np.allclose(knots.positions, [[2.0, 0.0], [2.0, -0.4]], atol=0.03)
+
+
+def test_a_wall_that_steps_aside_is_a_crank_of_two_corners() -> None:
+    quarter = np.pi / 2
+    knots = chain_knots(noisy(path([(quarter, 0.4), (-quarter, 2.0)], 2.0, 0.03), 0.005), 0.005, SETTINGS)
+    assert knots.kinds.tolist() == [Primitive.CRANK] * 2
+    assert np.allclose(knots.positions, [[2.0, 0.0], [2.0, 0.4]], atol=0.03)
+    assert np.allclose(knots.turns, [quarter, -quarter], atol=0.1)

@@ -71,3 +71,35 @@ def test_a_corners_track_runs_through_every_scale_without_moving() -> None:
     (path,) = track_paths(space, np.full(5, 0.4))
     assert path[:, 0].tolist() == [0, 1, 2, 3, 4]
     assert np.allclose(space.arc_length[path[:, 1]], 3.0, atol=0.05)
+
+
+@pytest.mark.parametrize("radius", [0.8, 1.5])
+def test_where_straight_meets_curved_the_second_derivative_peaks_at_the_step_of_curvature(radius: float) -> None:
+    arc = np.arange(0.01, np.pi / 2, 0.01 / radius)
+    bend = np.column_stack([3.0 + radius * np.sin(arc), radius * (1 - np.cos(arc))])
+    wall = np.vstack([np.column_stack([np.arange(0, 3.0, 0.01), np.zeros(300)]), bend])
+    space = scale_space(wall, np.array([0.1, 0.2]), 0.01)
+    for sigma, turns in zip(space.sigmas, space.turns, strict=True):
+        second = np.gradient(turns / (sigma * np.sqrt(2 * np.pi)), space.arc_length)  # (G∗θ)″
+        near = np.abs(space.arc_length - 3.0) < 2 * sigma
+        assert np.isclose(np.max(second[near]), 1 / (radius * sigma * np.sqrt(2 * np.pi)), rtol=0.06)
+        assert np.isclose(space.arc_length[near][np.argmax(second[near])], 3.0, atol=0.04)
+        assert np.min(second[near]) > -0.1 * np.max(second[near])  # a corner would have an opposite partner
+
+
+def test_a_bump_is_gone_at_coarse_scale() -> None:
+    quarter = np.pi / 2
+    bump = path([(quarter, 0.1), (-quarter, 0.2), (-quarter, 0.1), (quarter, 3.0)], spacing=0.01)
+    fine, coarse = scale_space(bump, np.array([0.02, 0.8]), 0.01).turns
+    assert np.max(np.abs(fine)) > 1.3
+    assert np.max(np.abs(coarse)) < 0.15
+
+
+@pytest.mark.parametrize("level", [1, 2, 3])
+def test_noise_turns_a_straight_wall_as_much_as_the_noise_law_says(level: int) -> None:
+    noise, spacing = 0.004, 0.04
+    wall = np.column_stack([np.arange(0.0, 40.0, spacing), np.zeros(1000)])
+    shaken = wall + np.random.default_rng(0).normal(0.0, noise, (1000, 1)) * np.array([0.0, 1.0])
+    turns = scale_space(shaken, SIGMAS, spacing).turns[level, 50:-50]
+    law = noise * np.sqrt(2 * np.pi) * np.sqrt(3 * spacing / (8 * np.sqrt(np.pi))) * SIGMAS[level] ** -1.5
+    assert np.isclose(np.std(turns), law, rtol=0.15)
