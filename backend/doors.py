@@ -28,6 +28,8 @@ class DoorSettings:
     widest: float = 1.40  # larger takes passages for doors
     thickest: float = 0.40  # of the wall; larger takes the gaps between furniture for doors
     detail: float = 0.03  # larger ignores bigger bumps of the boundary when looking for jambs
+    beside: float = 0.20  # larger lets a reported jamb lie farther off the wall it ends, and asks for a longer one
+    skew: float = 0.35  # radians; larger takes gaps that stand more aslant to their walls for doors
     apart: float = 0.40  # larger joins more distant sightings into one door
 
 
@@ -43,12 +45,14 @@ class Opening:
     view: Ints
 
 
-def doors_of(walls: MultiPolygon, reported: Opening, sight: Sight, settings: DoorSettings) -> tuple[Door, ...]:
+def doors_of(
+    free: MultiPolygon, walls: MultiPolygon, reported: Opening, sight: Sight, settings: DoorSettings
+) -> tuple[Door, ...]:
     """Named doors, left to right: openings the views reported, and facing jambs of the free space between walls.
 
     `walls` is the free space with the objects in it filled, so that gaps between furniture are no doors.
     """
-    facing, reported = facing_jambs(walls, settings), _door_wide(reported, settings)
+    facing, reported = facing_jambs(walls, settings), _in_line(free, _door_wide(reported, settings), settings)
     seen = Opening(
         np.concatenate([facing.jambs, reported.jambs]),
         np.concatenate([facing.weight, reported.weight]),
@@ -64,6 +68,33 @@ def _door_wide(reported: Opening, settings: DoorSettings) -> Opening:
     width = np.linalg.norm(reported.jambs[:, 1] - reported.jambs[:, 0], axis=1)
     fits = (width >= settings.narrowest) & (width <= settings.widest)
     return Opening(reported.jambs[fits], reported.weight[fits], reported.view[fits])
+
+
+def _in_line(free: MultiPolygon, reported: Opening, settings: DoorSettings) -> Opening:
+    """The reported openings in whose line a wall of the map goes on from a jamb: the others are gaps between things."""
+    edges = [
+        np.stack([corners[:-1], corners[1:]], axis=1)
+        for part in as_polygons(free.simplify(settings.detail)).geoms
+        for ring in (part.exterior, *part.interiors)
+        for corners in [np.asarray(ring.coords)]
+    ]
+    walled = np.zeros(len(reported.weight), dtype=np.bool_)
+    for end in (0, 1):
+        walled |= _goes_on(np.concatenate([np.empty((0, 2, 2)), *edges]), reported.jambs[:, [end, 1 - end]], settings)
+    return Opening(reported.jambs[walled], reported.weight[walled], reported.view[walled])
+
+
+def _goes_on(edges: Floats, openings: Floats, settings: DoorSettings) -> NDArray[np.bool_]:
+    """Openings (o, 2, 2) beside whose first jamb an edge (e, 2, 2) runs on in their line, away from the second."""
+    outward = openings[:, 0] - openings[:, 1]
+    outward = outward / np.linalg.norm(outward, axis=1, keepdims=True)
+    along = edges[:, 1] - edges[:, 0]
+    slope = np.abs(outward[:, None, 0] * along[None, :, 1] - outward[:, None, 1] * along[None, :, 0])
+    parallel = slope <= np.sin(settings.skew) * np.linalg.norm(along, axis=1)
+    on = np.max(np.sum((edges[None] - openings[:, None, None, 0]) * outward[:, None, None], axis=3), axis=2)
+    lines, jambs = shapely.linestrings(edges[None]), shapely.points(openings[:, :1])
+    near = shapely.distance(jambs, lines) <= settings.beside
+    return np.asarray((parallel & near & (on >= settings.beside)).any(axis=1))
 
 
 def facing_jambs(free: MultiPolygon, settings: DoorSettings) -> Opening:

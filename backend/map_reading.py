@@ -79,7 +79,7 @@ def read_map(
     edges = label_edges(boundary_edges(free), samples.thinned(settings.spacing), counts, settings.reach)
     objects = objects_in(free, edges, settings.objects)
     walls = as_polygons(shapely.union_all([free, *(thing.outline for thing in objects)]))
-    doors = doors_of(walls, _reported(views), sight, settings.doors)
+    doors = doors_of(free, walls, _reported(views), sight, settings.doors)
     safety = as_polygons(free.buffer(-settings.inset, join_style="mitre"))
     decided = _decisions(views, (mask, counts), sight, edges, settings)
     inferred = tuple(_inferred(thing, sight) for thing in objects if thing.inferred)
