@@ -107,9 +107,10 @@ def _own_blocks(rows: Floats, owner: Integers, count: int) -> csr_array:
 
 
 def _through_lines(rows: Floats, basis: Floats, cells: Integers, owner: Integers, shape: tuple[int, int]) -> csr_array:
-    """(2c, 3k), its shape, how poses pull at the lines of the cells; what they pull at is no longer known of the poses."""
-    names, pairs = np.unique(cells * (owner.max() + 1) + owner, return_inverse=True)
-    cell, pose = np.divmod(names, owner.max() + 1)
+    """(2c, 3k), its shape: how poses pull at the lines of the cells; what they pull at is no longer known of them."""
+    poses = shape[1] // 3
+    names, pairs = np.unique(cells * poses + owner, return_inverse=True)
+    cell, pose = np.divmod(names, poses)
     values = np.empty((len(names), 2, 3))
     for i in range(2):
         for j in range(3):

@@ -96,3 +96,11 @@ def test_two_faces_of_a_thin_wall_are_never_one_line() -> None:
     )
     found = refine(true, sheaf, wheels(true, np.array([0.1, 0.1, 0.05])), SETTINGS)
     assert np.max(np.abs(found - true)[:, :2]) < 0.005
+
+
+def test_faces_that_no_line_holds_leave_the_wheels_alone() -> None:
+    rng = np.random.default_rng(7)
+    true = drive(2)
+    scattered = rng.uniform(0, 9, (40, 2))  # nowhere enough of them in one place to be a wall
+    sheaf = seen(true, scattered, np.tile([1.0, 0.0], (40, 1)), 0.01, rng)
+    assert refine(true, sheaf, wheels(true, np.full(3, 0.02)), SETTINGS) == pytest.approx(true)
