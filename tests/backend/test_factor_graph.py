@@ -236,3 +236,27 @@ def test_a_wall_seen_twice_ties_the_way_towards_it_and_not_along_it() -> None:
     assert np.allclose(mean[:3], graph.poses[1])
     assert np.sqrt(covariance[0, 0]) < 0.02
     assert np.sqrt(covariance[1, 1]) > 0.09
+
+
+def test_a_carried_part_keeps_its_shape_and_then_hangs_on_what_ties_it() -> None:
+    """Two chains with anchors of their own; the second, with its landmark, is laid on the first and tied there."""
+    true = twice_round(12)
+    carry = np.array([30.0, -5.0, 1.0])
+    graph = chained(true[:6])
+    for k in range(6, 12):
+        graph.add_pose(k, compose(carry, true[k]))
+        if k == 6:
+            graph.anchor(6, compose(carry, true[6]), FIRM)
+        else:
+            graph.add_motion(k - 1, k, between(true[k - 1], true[k]), STEP)
+    graph.add_landmark(0, transform(np.array([[1.0, 1.0]]), carry)[0])
+    for k in (7, 8):
+        seen = transform(np.array([[1.0, 1.0]]), inverse(true[k]))[0]
+        graph.add_sighting(k, 0, seen, np.diag([0.02, 0.02]) ** 2)
+    graph.solve()
+    graph.carry({k: compose(inverse(carry), pose) for k, pose in enumerate(graph.poses) if k >= 6}, freed=6)
+    np.testing.assert_allclose(graph.landmarks[0], [1, 1], atol=1e-3)
+    graph.add_loop(5, 6, between(true[5], true[6]), LOOP)
+    graph.mend()
+    graph.solve()
+    assert worst(graph, true) < 1e-3

@@ -153,3 +153,41 @@ def test_arguments_are_not_written_into() -> None:
     odometry.learn(wheels, Move(moved, REGISTERED))
     np.testing.assert_array_equal(wheels, [0.1, 0, 0.1])
     np.testing.assert_array_equal(moved, [0.12, 0, 0.11])
+
+
+def settled(count: int = 20) -> Odometry:
+    """A filter that saw the robot go half a metre every half second."""
+    odometry, move = Odometry(SETTINGS), np.array([0.5, 0.0, 0.0])
+    for _ in range(count):
+        odometry.expect(move, 0.5)
+        odometry.learn(move, Move(move, REGISTERED), 0.5)
+    return odometry
+
+
+def test_after_a_gap_in_the_log_the_wheels_are_followed_but_doubted() -> None:
+    odometry, move = settled(), np.array([0.5, 0.0, 0.0])
+    expected, why = odometry.expect(move, 60.0)
+    assert why == "60.0 s without a scan, usually 0.50 s"
+    np.testing.assert_allclose(expected.pose, odometry.predict(move).pose)
+    assert expected.covariance[0, 0] > SETTINGS.lost_metres**2
+
+
+def test_a_move_that_no_robot_makes_is_not_followed() -> None:
+    expected, why = settled().expect(np.array([40.0, 0.0, 0.0]), 0.5)
+    assert why == "the wheels claim 40.0 m in 0.50 s"
+    np.testing.assert_array_equal(expected.pose, 0)
+
+
+def test_slow_scans_are_no_gaps() -> None:
+    odometry = Odometry(SETTINGS)
+    whys = [odometry.expect(np.array([0.5, 0.0, 0.0]), seconds)[1] for seconds in (30.0, 35.0, 28.0, 40.0)]
+    assert whys == [None] * 4
+
+
+def test_wheels_that_stand_still_while_the_robot_goes_on_are_not_asked_again_until_they_agree() -> None:
+    odometry, stuck, went = settled(), np.zeros(3), np.array([0.5, 0.0, 0.0])
+    for _ in range(SETTINGS.slips):
+        assert odometry.learn(stuck, Move(went, REGISTERED), 0.5) > SETTINGS.slip_gate
+    np.testing.assert_allclose(odometry.expect(stuck, 0.5)[0].pose, went)
+    odometry.learn(went, Move(went, REGISTERED), 0.5)
+    np.testing.assert_allclose(odometry.expect(went, 0.5)[0].pose, odometry.predict(went).pose)
