@@ -3,6 +3,7 @@
 scan           what the head saw in one turn, with the facts of its sensor
 sensors/       what sonar, infrared, lidar and time-of-flight would read in a given world
 fusion         sonar and infrared combined by three rules: opening undoes the beam, redrawing opens the doors
+room_corners   square corners the beam cannot see into, inferred; half_beam tells how wide it is
 door_edges     jambs tracked over scans
 contour        readings joined into a boundary, every edge real or a line of sight; surface for registration
 scale_space    the boundary's orientation at several scales; landmarks and jambs are what stands out

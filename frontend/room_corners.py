@@ -8,6 +8,7 @@ readings are no shorter than the beam makes them, that corner is the simplest ro
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
 from frontend.redrawing import BRIGHT_SHARE
 from frontend.scan import Booleans, Floats, Integers, Scan
@@ -30,27 +31,25 @@ def room_corners(profile: Profile, hidden: Booleans, scan: Scan) -> list[RoomCor
     """The corners that walls on both sides agree on; hidden (n,): readings that may lie in one, and are no opening."""
     if scan.sensor.half_beam <= 0:
         return []
-    found = [_corner_at(int(peak), profile, hidden, scan) for peak in _peaks(profile.ranges, hidden, scan)]
+    found = [_corner_at(int(peak), profile, hidden, scan) for peak in _peaks(profile, hidden, scan)]
     return [corner for corner in found if corner is not None]
 
 
-def _width(metres: float, scan: Scan) -> int:
+def _width(metres: float, profile: Profile, scan: Scan) -> int:
     """Readings to each side that a bright surface so far away is heard in."""
-    step = float(np.median(np.diff(scan.bearings)))
-    return int(np.ceil(BRIGHT_SHARE * scan.sensor.half_beam_at(metres) / step))
+    return int(np.ceil(BRIGHT_SHARE * scan.sensor.half_beam_at(metres) / profile.step))
 
 
-def _peaks(ranges: Floats, hidden: Booleans, scan: Scan) -> Integers:
+def _peaks(profile: Profile, hidden: Booleans, scan: Scan) -> Integers:
     """One reading (p,) of every rise of the profile: none within half a narrow beam of it is farther."""
-    reach = max(_width(scan.sensor.max_range, scan) // 2, 2)
-    around = np.stack([np.roll(ranges, k) for k in range(-reach, reach + 1)])
-    highest = (ranges >= np.max(around, axis=0)) & hidden
+    reach = max(_width(scan.sensor.max_range, profile, scan) // 2, 2)
+    highest = (profile.ranges >= maximum_filter1d(profile.ranges, 2 * reach + 1, mode="wrap")) & hidden
     return np.flatnonzero(highest & ~np.roll(highest, 1))
 
 
 def _corner_at(peak: int, profile: Profile, hidden: Booleans, scan: Scan) -> RoomCorner | None:
     noise = float(np.hypot(scan.sensor.range_noise, scan.sensor.quantum))
-    n, width = profile.ranges.size, _width(float(profile.ranges[peak]), scan)
+    n, width = profile.ranges.size, _width(float(profile.ranges[peak]), profile, scan)
     right, left = (wall_beside(profile, peak, sense, noise) for sense in (-1, 1))
     if right is None or left is None or max(right.away, left.away) > width + 1:
         return None
@@ -77,7 +76,7 @@ def _believable(stretch: Integers, ranges: Floats, profile: Profile, scan: Scan)
         return False
     whole = profile.ranges.copy()
     whole[stretch] = ranges
-    width = _width(float(np.min(ranges)), scan)
+    width = _width(float(np.min(ranges)), profile, scan)
     beams = whole[(stretch[:, None] + np.arange(-width, width + 1)) % whole.size]
     if np.any(scan.ranges[stretch] < np.min(beams, axis=1) - noise):
         return False

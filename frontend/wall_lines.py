@@ -4,6 +4,7 @@ In corners and beside gaps a wide beam reads short, so a wall is fitted where it
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -22,6 +23,16 @@ class Profile:
     bearings: Floats
     ranges: Floats
     measured: Booleans
+
+    @cached_property
+    def points(self) -> Floats:
+        """(n, 2) where the readings end, in the sensor's frame."""
+        return np.asarray(self.ranges[:, None] * np.column_stack([np.cos(self.bearings), np.sin(self.bearings)]))
+
+    @cached_property
+    def step(self) -> float:
+        """Radians from one bearing to the next."""
+        return float(np.median(np.diff(self.bearings)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,10 +67,8 @@ def wall_beside(profile: Profile, place: int, sense: int, noise: float) -> WallL
 
     noise: metres, of a reading.
     """
-    bearings = profile.bearings
-    points = profile.ranges[:, None] * np.column_stack([np.cos(bearings), np.sin(bearings)])
-    span = min(int(FARTHEST / np.median(np.diff(bearings))), bearings.size // 2)
-    row = _longest_line(points, profile.measured, place, sense, span, noise)
+    span = min(int(FARTHEST / profile.step), profile.bearings.size // 2)
+    row = _longest_line(profile.points, profile.measured, place, sense, span, noise)
     return None if np.isnan(row[0]) else WallLine(row[:2], float(row[2]), float(row[3]), float(row[4]), int(row[5]))
 
 
