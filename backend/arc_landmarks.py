@@ -25,15 +25,19 @@ class ArcLandmarkSettings:
     association: AssociationSettings = field(default_factory=AssociationSettings)
     births: BirthSettings = field(default_factory=BirthSettings)
     reach: float = 5.5  # metres around the robot in which landmarks are looked for; larger looks farther
+    fresh: int = 15  # scans since a landmark was seen after which to see it again is a loop; larger doubts fewer
+    revisits: int = 2  # such landmarks a scan must recognise at once; larger refuses more loops
     waiting: int = 6  # scans an arc waits for others; larger finds landmarks that are rarely seen
 
 
 @dataclass(frozen=True)
 class _Landmark:
-    """index: among the graph's walls or landmarks. start, stop: what was seen of a wall, leftward of its origin."""
+    """index: among the graph's walls or landmarks. seen: the newest pose that did. start, stop: of a wall, as far as it
+    was seen, leftward of its origin."""
 
     wall: bool
     index: int
+    seen: int = 0
     start: float = 0.0
     stop: float = 0.0
 
@@ -57,23 +61,23 @@ class ArcLandmarks:
         self._landmarks.clear()
         self._waiting.clear()
 
-    def place(
-        self, graph: FactorGraph, last: int, move: Move, arcs: Arcs, guess: Move | None
-    ) -> tuple[Placement, list[int]]:
-        """Where a scan lies after `move` from the pose `last`, and which landmarks its pairs mean.
-
-        guess: the pose (3,) in the room as something else found it, with covariance in the room's axes.
-        """
+    def place(self, graph: FactorGraph, last: int, move: Move, arcs: Arcs) -> tuple[Placement, list[int]]:
+        """Where a scan lies after `move` from the pose `last`, and which landmarks its pairs mean."""
         near = self._near(graph, last)
+        placement = self._associated(graph, last, move, arcs, near)
+        fresh = [k for k in near if last - self._landmarks[k].seen < self.settings.fresh]
+        revisited = {which for _, which in placement.pairs} - {near.index(k) for k in fresh}
+        if 0 < len(revisited) < self.settings.revisits:
+            # One old landmark alone may be mistaken, and would bend the whole round: loops need company.
+            return self._associated(graph, last, move, arcs, fresh), fresh
+        return placement, near
+
+    def _associated(self, graph: FactorGraph, last: int, move: Move, arcs: Arcs, near: list[int]) -> Placement:
         walls = [self._landmarks[k].index for k in near if self._landmarks[k].wall]
         edges = [self._landmarks[k].index for k in near if not self._landmarks[k].wall]
         belief = _moved(Belief(*graph.belief(last, walls, edges)), move)
-        if guess is not None:
-            offset = guess.pose - belief.mean[:3]
-            offset[2] = (offset[2] + np.pi) % (2 * np.pi) - np.pi
-            belief = belief.updated(np.arange(3), np.eye(3), offset, guess.covariance)
         known = [self._known(k, walls, edges) for k in near]
-        return associate(belief, known, arcs, self.settings.association), near
+        return associate(belief, known, arcs, self.settings.association)
 
     def see(self, graph: FactorGraph, pose: int, arcs: Arcs, placement: Placement, near: list[int]) -> None:
         """Tie the newest pose, already in the graph, to what it saw; what nothing explains waits."""
@@ -133,7 +137,7 @@ class ArcLandmarks:
     def _add_wall(self, graph: FactorGraph, frame: Floats) -> int:
         index = len(self._counts[True])
         graph.add_wall(index, frame)
-        return self._add(_Landmark(True, index, np.inf, -np.inf))
+        return self._add(_Landmark(True, index, 0, np.inf, -np.inf))
 
     def _add(self, landmark: _Landmark) -> int:
         self._landmarks.append(landmark)
@@ -145,11 +149,12 @@ class ArcLandmarks:
         self._counts[one.wall][one.index] += 1
         if not one.wall:
             graph.add_sighting(pose, one.index, *arcs.sighted_edge(arc))
+            self._landmarks[landmark] = _Landmark(False, one.index, pose)
             return
         along = seen_wall(graph.poses[pose], graph.walls[one.index])[2]
         graph.add_wall_sighting(pose, one.index, *arcs.sighted_wall(arc, along))
         start, stop = along + float(arcs.starts[arc]), along + float(arcs.stops[arc])
-        self._landmarks[landmark] = _Landmark(True, one.index, min(one.start, start), max(one.stop, stop))
+        self._landmarks[landmark] = _Landmark(True, one.index, pose, min(one.start, start), max(one.stop, stop))
 
 
 def _moved(belief: Belief, move: Move) -> Belief:

@@ -14,7 +14,7 @@ from backend.factor_graph import FactorGraph
 from backend.odometry import Move
 from frontend.local_map import Faces, LocalMap
 from frontend.registration import Guess, RegistrationSettings, register
-from frontend.rigid_motion import compose, wrap
+from frontend.rigid_motion import between, compose, wrap
 from frontend.scan import Floats, Integers
 from frontend.surface import Surface
 from slam.tracking import turned
@@ -61,8 +61,8 @@ class ArcTracking:
         """
         poses = graph.poses
         number, last = len(poses), poses[-1]
-        guess = self._guess(surface, recent, compose(last, move.pose), turned(move.covariance, last[2]))
-        placement, near = self._landmarks.place(graph, number - 1, move, arcs, guess)
+        likely = self._likely(surface, recent, last, move)
+        placement, near = self._landmarks.place(graph, number - 1, likely, arcs)
         graph.add_pose(number, placement.pose)
         graph.add_motion(number - 1, number, move.pose, turned(move.covariance, -move.pose[2]))
         self._landmarks.see(graph, number, arcs, placement, near)
@@ -72,18 +72,19 @@ class ArcTracking:
         covariance = turned(placement.covariance, -placement.pose[2])
         return graph.poses[number], covariance, len(placement.pairs)
 
-    def _guess(self, surface: Surface, recent: list[Faces], claimed: Floats, doubt: Floats) -> Move | None:
-        """Where the outline lies on recent ones, in the room's axes; None where it says little or contradicts the
-        claimed pose (3,) with its covariance (3, 3)."""
-        settings = self.settings
+    def _likely(self, surface: Surface, recent: list[Faces], last: Floats, move: Move) -> Move:
+        """The move from the pose `last` (3,) that the outline laid on recent ones and the wheels agree on; that of the
+        wheels where the outline says little or contradicts them."""
+        settings, claimed = self.settings, compose(last, move.pose)
         faces = Faces.together(recent).facing(claimed[:2], settings.reach)
         if min(len(faces.points), len(surface.points)) < settings.least_faces:
-            return None
+            return move
         worth = np.diag([settings.metres, settings.metres, settings.radians]) ** 2
-        prior = doubt + worth / 4
-        start = Guess(claimed, np.asarray(np.linalg.inv(prior)))
+        start = Guess(claimed, np.asarray(np.linalg.inv(turned(move.covariance, last[2]))))
         found = register(surface, LocalMap.of(faces), start, settings.registration)
-        offset = found.pose_in_fixed - claimed
+        offset = between(last, found.pose_in_fixed) - move.pose
         offset[2] = float(wrap(offset[2]))
-        contradicts = offset @ np.linalg.solve(prior, offset) > settings.gate
-        return None if found.matched < settings.matched or contradicts else Move(found.pose_in_fixed, worth)
+        gain = move.covariance @ np.linalg.inv(move.covariance + worth)
+        if found.matched < settings.matched or offset @ np.linalg.solve(move.covariance, offset) > settings.gate:
+            return move
+        return Move(move.pose + gain @ offset, move.covariance - gain @ move.covariance)

@@ -27,7 +27,7 @@ def test_wheels_that_err_are_put_right_by_walls_heard_again() -> None:
     wrong = np.array([0.53, 0.0, 0.015])
     for k in range(1, len(TRUE)):
         move, arcs = driven(wrong, OdometrySettings()), heard(TRUE[k])
-        placement, near = landmarks.place(graph, k - 1, move, arcs, None)
+        placement, near = landmarks.place(graph, k - 1, move, arcs)
         assert len(placement.pairs) == len(WALLS)
         graph.add_pose(k, placement.pose)
         graph.add_motion(k - 1, k, move.pose, move.covariance)
@@ -43,5 +43,5 @@ def test_what_was_forgotten_is_not_recognised() -> None:
     graph.anchor(0, np.zeros(3), np.eye(3) * 1e-8)
     landmarks.see(graph, 0, heard(TRUE[0]), Placement(np.zeros(3), np.zeros((3, 3)), (), (0, 1, 2)), [])
     landmarks.forget()
-    placement, _ = landmarks.place(graph, 0, driven(np.zeros(3), OdometrySettings()), heard(TRUE[0]), None)
+    placement, _ = landmarks.place(graph, 0, driven(np.zeros(3), OdometrySettings()), heard(TRUE[0]))
     assert placement.loose == (0, 1, 2)
