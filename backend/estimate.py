@@ -20,7 +20,7 @@ class Decision:
 
 @dataclass(frozen=True, eq=False)
 class Tie:
-    """Keyframe `moving` was found at `pose` (3,) in the frame of `fixed`; information (3, 3) in the moving one's axes."""
+    """Keyframe `moving` was found at `pose` (3,) in the frame of `fixed`; information (3, 3) in moving's axes."""
 
     fixed: int
     moving: int

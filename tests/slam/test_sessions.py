@@ -17,7 +17,8 @@ TRUE = np.array([[0.0, 0, 0], [1.0, 0, 0], [2.0, 0, 0], [3.0, 1.0, 0.5], [4.0, 1
 
 def two_sessions() -> tuple[Sessions, list[Keyframe]]:
     """Three keyframes of a first session at their true poses, two of a second one on its island."""
-    sessions, keyframes = Sessions(), []
+    sessions = Sessions()
+    keyframes: list[Keyframe] = []
     for number, pose in enumerate(TRUE):
         first = 3 * (number >= 3)
         start = sessions.begin() if number in {0, 3} else keyframes[first].pose
