@@ -5,7 +5,7 @@ from typing import Self
 
 import numpy as np
 
-from frontend.point_to_line import sort_into_cells
+from frontend.point_to_line import faces_towards, sort_into_cells
 from frontend.rigid_motion import rotation, transform
 from frontend.scan import Floats, Integers
 from frontend.surface import Surface
@@ -36,9 +36,7 @@ class Faces:
 
     def facing(self, viewpoint: Floats, reach: float) -> "Faces":
         """What of it turns its face to `viewpoint` (2,) within `reach` metres: facing side is identity."""
-        rays = viewpoint - self.points
-        kept = (np.einsum("ij,ij->i", rays, self.normals) > 0) & (np.einsum("ij,ij->i", rays, rays) < reach**2)
-        return Faces(self.points[kept], self.normals[kept])
+        return Faces(*faces_towards(self.points, self.normals, viewpoint, reach))
 
 
 @dataclass(frozen=True, eq=False)

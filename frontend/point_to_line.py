@@ -10,6 +10,23 @@ FAR = 5.0  # metres; about where the surface lies that a turn moves
 
 
 @compiled
+def faces_towards(points: Floats, normals: Floats, viewpoint: Floats, reach: float) -> tuple[Floats, Floats]:
+    """Those of the points (k, 2) and normals (k, 2) that turn their face to a viewpoint (2,) within the reach."""
+    kept = np.empty(len(points), np.int64)
+    found = 0
+    for i in range(len(points)):
+        dx, dy = viewpoint[0] - points[i, 0], viewpoint[1] - points[i, 1]
+        if dx * normals[i, 0] + dy * normals[i, 1] > 0 and dx * dx + dy * dy < reach * reach:
+            kept[found] = i
+            found += 1
+    chosen, facing = np.empty((found, 2)), np.empty((found, 2))
+    for k in range(found):
+        for axis in range(2):
+            chosen[k, axis], facing[k, axis] = points[kept[k], axis], normals[kept[k], axis]
+    return chosen, facing
+
+
+@compiled
 def sort_into_cells(points: Floats, cell: float) -> tuple[Integers, Integers, Floats, int, int]:
     """Grid over points (k, 2): order (k,), start of each cell (c + 1,), corner (2,), columns, rows."""
     corner = np.array([points[:, 0].min(), points[:, 1].min()]) - 1e-9

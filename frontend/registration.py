@@ -74,7 +74,7 @@ def register(
     surface: Surface, local_map: LocalMap, guess: Guess, settings: RegistrationSettings, start: Floats | None = None
 ) -> Alignment:
     """Pull the surface onto the map, from `start` (3,) where it differs from the guess."""
-    spread = float(np.median(surface.spread)) if len(surface.spread) else 0.0
+    spread = surface.usual_spread
     passes = settings.passes(spread)
     faces = local_map.faces
     pose, information, square, partners = descend(
@@ -83,7 +83,8 @@ def register(
         guess.pose if start is None else start, guess.pose, guess.information, passes,
     )  # fmt: skip
     believed = information / (max(square, spread**2, settings.finest**2) * settings.shared_beams)
-    firm = np.linalg.eigvalsh(information[:2, :2])
+    middle = (information[0, 0] + information[1, 1]) / 2
+    apart = float(np.hypot((information[0, 0] - information[1, 1]) / 2, information[0, 1]))
     matched = np.flatnonzero(partners >= 0)
     return Alignment(
         pose,
@@ -91,7 +92,7 @@ def register(
         np.column_stack([matched, partners[matched]]),
         float(np.sqrt(square)),
         len(matched) / max(len(partners), 1),
-        float(firm[0] / max(firm[1], 1e-12)),
+        max(float(middle) - apart, 0.0) / max(float(middle) + apart, 1e-12),
     )
 
 

@@ -1,5 +1,7 @@
 """Rigid motions of the plane: a pose is x, y, heading in the frame its name says."""
 
+from math import cos, pi, sin
+
 import numpy as np
 
 from frontend.scan import Floats
@@ -23,14 +25,18 @@ def transform(points: Floats, pose: Floats) -> Floats:
 
 def compose(first: Floats, second: Floats) -> Floats:
     """The pose reached by `second` (3,) when it starts from `first` (3,)."""
-    x, y = rotation(first[2]) @ second[:2] + first[:2]
-    return np.array([x, y, float(wrap(first[2] + second[2]))])
+    x, y, heading = map(float, first)
+    forward, left, turn = map(float, second)
+    cosine, sine = cos(heading), sin(heading)
+    turned = pi - (pi - heading - turn) % (2 * pi)
+    return np.array([x + cosine * forward - sine * left, y + sine * forward + cosine * left, turned])
 
 
 def inverse(pose: Floats) -> Floats:
     """The pose (3,) of the outer frame seen from `pose`."""
-    x, y = -rotation(pose[2]).T @ pose[:2]
-    return np.array([x, y, float(wrap(-pose[2]))])
+    x, y, heading = map(float, pose)
+    cosine, sine = cos(heading), sin(heading)
+    return np.array([-cosine * x - sine * y, sine * x - cosine * y, pi - (pi + heading) % (2 * pi)])
 
 
 def between(first: Floats, second: Floats) -> Floats:

@@ -1,6 +1,7 @@
 """Surface points for registration: line fits over neighbouring beams of one real chain, facing the sensor."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -19,6 +20,11 @@ class Surface:
     normals: Floats
     spread: Floats
     reading: Integers
+
+    @cached_property
+    def usual_spread(self) -> float:
+        """The median of the spread, metres; 0 without surface."""
+        return float(np.median(self.spread)) if len(self.spread) else 0.0
 
 
 def fit_reaches(bearings: Floats, ranges: Floats, spread: Floats, surest: float, least: int, widest: float) -> Integers:

@@ -79,7 +79,7 @@ def _searched(
 
 def _refusal(percept: Percept, found: Alignment, faces: Faces, settings: VerificationSettings) -> str | None:
     seen = look(percept.fused, found.pose_in_fixed, faces, settings.visibility)
-    widest = max(settings.residual, 2 * float(np.median(percept.surface.spread)))
+    widest = max(settings.residual, 2 * percept.surface.usual_spread)
     for value, limit, holds, sentence in (
         (found.matched, settings.matched, found.matched >= settings.matched, "of the scan lies on the old map"),
         (

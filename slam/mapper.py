@@ -390,7 +390,7 @@ class Mapper:
         self._vain = self._pause = 0
 
     def _tried_loops(self) -> tuple[Tried, ...]:
-        poses = np.array([keyframe.pose for keyframe in self._keyframes])
+        poses = np.concatenate([keyframe.pose for keyframe in self._keyframes]).reshape(-1, 3)
         found = candidates(poses, self._drift, self.settings.loops)
         return tuple(Tried(candidate.pose, self._verify(candidate)) for candidate in found)
 
