@@ -17,11 +17,12 @@ from backend.wheel_noise import driven
 from frontend.local_map import Faces
 from frontend.registration import Alignment
 from frontend.rigid_motion import between, compose
-from frontend.scan import Floats, Integers, Scan
+from frontend.scan import Floats, Scan
 from slam.arc_tracking import ArcTracking, ArcTrackingSettings
 from slam.keyframes import Keyframe, around
 from slam.logbook import Logbook
 from slam.loops import Tried, VerificationSettings, close_loop
+from slam.main_map import landmarks_in, left_out, main_root
 from slam.perception import FrontendSettings, Percept, perceive
 from slam.refining import UNKNOWN, refined, wheels_say
 from slam.relocalisation import RelocalisationSettings, relocalise
@@ -166,22 +167,25 @@ class Mapper:
         by_arcs = any(keyframe.percept.arcs is not None for keyframe in self._keyframes)
         poses = poses if by_arcs else self._refined(poses)
         self._tick("graph", clock)
-        main, owners = self._main_root(), np.array([k for k, _ in self._relative], np.int64)
+        owners = np.array([k for k, _ in self._relative], np.int64)
         roots = np.array([self._sessions.root(keyframe.session) for keyframe in self._keyframes], np.int64)
+        main = main_root(roots[owners])
+        landmarks, kept, landmark_ties = landmarks_in(graph, roots == main)
+        counts = self._arcs.counts if by_arcs else self._landmarks.counts[graph.landmark_indices]
         told = [self._sessions.told(pose, self._keyframes[k].session) for pose, k in zip(poses, owners, strict=True)]
         mapped = roots[owners] == main
         mapped[sorted(self._unmapped)] = False
         return Estimate(
             poses=np.array(told).reshape(-1, 3),
             covariances=covariances[owners],
-            landmarks=graph.landmarks,
-            sightings=self._arcs.counts if by_arcs else self._landmarks.counts[graph.landmark_indices],
+            landmarks=landmarks - self._sessions.start(main)[:2],
+            sightings=counts[kept],
             keyframes=np.array([keyframe.scan for keyframe in self._keyframes]),
-            decisions=(*self._decisions, *self._doubted(graph), *self._left_out(roots[owners], main)),
+            decisions=(*self._decisions, *self._doubted(graph), *left_out(roots[owners], main)),
             calibration=self._calibration(),
             mapped=mapped,
             ties=tuple(graph.ties),
-            landmark_ties=tuple(graph.landmark_ties),
+            landmark_ties=landmark_ties,
         )
 
     def _calibration(self) -> dict[str, float]:
@@ -189,21 +193,6 @@ class Mapper:
         odometry = self._odometries[-1] if self._odometries else Odometry(self.settings.odometry)
         names = ("metres per metre", "radians per radian", "radians per metre", "sensor forward", "sensor left")
         return dict(zip(names, map(float, odometry.calibration), strict=True))
-
-    def _main_root(self) -> int:
-        """Of the frames that were not joined, the one with the most scans: the map is made in it."""
-        roots = [self._sessions.root(self._keyframes[k].session) for k, _ in self._relative]
-        return max(sorted(set(roots)), key=roots.count, default=0)
-
-    def _left_out(self, roots: Integers, main: int) -> list[Decision]:
-        """One decision for each frame that was never joined to the map's."""
-        return [
-            Decision("session", tuple(map(int, np.flatnonzero(roots == root))), accepted=False, reason=reason)
-            for root in sorted(set(roots.tolist()) - {main})
-            for reason in [
-                f"none of its {np.sum(roots == root)} scans was recognised in the map: they are left out of it"
-            ]
-        ]
 
     def _refined(self, poses: Floats) -> Floats:
         """Poses (n, 3) of all scans after their faces and the wheels were solved together; unmapped ones stay."""

@@ -44,7 +44,7 @@ class Sessions:
     def begin(self) -> Floats:
         """A new session; the pose (3,) of its first scan."""
         self._roots.append(len(self._roots))
-        return np.array([ISLAND * self._roots[-1], 0.0, 0.0])
+        return self.start(self._roots[-1])
 
     @property
     def newest(self) -> int:
@@ -60,9 +60,13 @@ class Sessions:
         """The earliest session with the same frame."""
         return self._roots[session]
 
+    def start(self, root: int) -> Floats:
+        """The pose (3,) of the first scan of a session that kept its frame."""
+        return np.array([ISLAND * root, 0.0, 0.0])
+
     def told(self, pose: Floats, session: int) -> Floats:
         """A pose (3,) in the frame of its root's first scan."""
-        return np.asarray(pose - np.array([ISLAND * self._roots[session], 0.0, 0.0]))
+        return np.asarray(pose - self.start(self._roots[session]))
 
     def others(self, session: int) -> list[int]:
         """The roots of sessions with other frames than this one."""

@@ -70,6 +70,8 @@ def test_a_robot_carried_elsewhere_is_told_to_be_lost_and_the_map_stays_right(sc
     np.testing.assert_array_equal(merged.estimate.mapped, np.arange(75) < 60)
     assert len(merged.percepts) == len(merged.poses) == 60
     assert off(merged.poses, TRUE[:60]) < 0.04
+    assert np.max(np.abs(merged.estimate.landmarks)) < 30
+    assert {tie.landmark for tie in merged.estimate.landmark_ties} == set(range(len(merged.estimate.landmarks)))
 
 
 def test_a_pause_that_the_wheels_bridge_is_told_and_does_no_harm(scans: list[Scan]) -> None:
