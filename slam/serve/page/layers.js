@@ -14,13 +14,13 @@ export const LAYERS = [
   { id: "raw", name: "Raw scans", on: false, count: (book) => book.scans.length || "", paint: paintRaw },
   { id: "redrawn", name: "Redrawn boundaries", on: false, count: (book) => book.scans.length || "", paint: paintRedrawn },
   { id: "filler", name: "Fillers", on: false, count: (book) => sum(book, "fillers", 2) || "", paint: paintFillers },
-  { id: "inferred", name: "Inferred obstacles", on: true, count: (book) => bodies(book, true).length || "none", paint: (context, scene) => paintBodies(context, scene, true) },
-  { id: "body", name: "Measured obstacles", on: true, count: (book) => bodies(book, false).length || "none", paint: (context, scene) => paintBodies(context, scene, false) },
+  { id: "inferred", name: "Inferred obstacles", on: true, count: (book) => known(book, bodies(book, true).length), paint: (context, scene) => paintBodies(context, scene, true) },
+  { id: "body", name: "Measured obstacles", on: true, count: (book) => known(book, bodies(book, false).length), paint: (context, scene) => paintBodies(context, scene, false) },
   { id: "frontier", name: "Frontiers", on: true, count: (book) => metres(book, 1), paint: paintFrontiers },
   { id: "wall", name: "Wall faces, by support", on: true, count: (book) => metres(book, 0), paint: paintWalls },
-  { id: "door", name: "Doors", on: true, count: (book) => book.room?.doors.length || "none", paint: paintDoors },
+  { id: "door", name: "Doors", on: true, count: (book) => known(book, book.room?.doors.length), paint: paintDoors },
   { id: "knot", name: "Knots, 2σ ellipses", on: false, count: (book) => sum(book, "knots", 2) || "", paint: paintKnots },
-  { id: "landmark", name: "Landmarks", on: false, count: (book) => (book.room?.landmarks.length ?? 0) / 2 || "none", paint: paintLandmarks },
+  { id: "landmark", name: "Landmarks", on: false, count: (book) => known(book, book.room?.landmarks.length / 2), paint: paintLandmarks },
   { id: "drive", name: "Drive, 2σ ellipses", on: true, count: (book) => book.count || "", paint: paintDrive },
   { id: "truth", name: "Truth and error", on: false, count: (book) => (book.truth ? worst(book) : "unknown"), ready: (book) => book.truth !== null, paint: paintTruth },
 ];
@@ -370,6 +370,9 @@ export function bodies(book, inferred) {
   });
   return room.outlined.filter((body) => body.inferred === inferred);
 }
+
+// A number of things on the map, or that there are none; nothing while there is no map.
+function known(book, number) { return book.room ? number || "none" : ""; }
 
 function sum(book, name, size) {
   return book.scans.reduce((total, scan) => total + (scan ? scan[name].length / size : 0), 0);
