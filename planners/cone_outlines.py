@@ -1,5 +1,7 @@
 """Cones to look at: spines with the free strip on both sides, slice by slice."""
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,19 +14,24 @@ Floats = NDArray[np.float64]
 
 
 def cone_outlines(slices: Slices, ends: Floats, lines: Floats, pairs: Floats) -> tuple[Cone, ...]:
-    """Every cone with its outline: as far as the walls of its pair reach across the spine, or another obstacle.
+    """Every cone, to be outlined when it is looked at: as far as its own two walls reach, or another obstacle.
 
     ends (m, 4) and lines (m, 3), normals and offsets, of the walls; pairs (k, 2) of walls.
     """
     cones = []
     for cone, pair in enumerate(pairs.astype(int)):
         pieces = slices.pieces[slices.first[cone] : slices.first[cone + 1]]
-        across = lines[pair[0], :2] - lines[pair[1], :2]
-        across = across / np.linalg.norm(across)
-        one, two = _side(pieces, across, ends, lines[pair[0]]), _side(pieces, -across, ends, lines[pair[1]])
         spine = np.stack([pieces[0, :2], pieces[-1, 2:]])
-        cones.append(Cone(spine, np.concatenate([one, two[::-1]])))
+        cones.append(Cone(spine, partial(_outline, pieces, ends, lines[pair])))
     return tuple(cones)
+
+
+def _outline(pieces: Floats, ends: Floats, lines: Floats) -> Floats:
+    """Corners (4n, 2) around n slices between two walls' lines (2, 3)."""
+    across = lines[0, :2] - lines[1, :2]
+    across = across / np.linalg.norm(across)
+    one, two = _side(pieces, across, ends, lines[0]), _side(pieces, -across, ends, lines[1])
+    return np.concatenate([one, two[::-1]])
 
 
 def _side(pieces: Floats, normal: Floats, ends: Floats, line: Floats) -> Floats:

@@ -1,6 +1,8 @@
 """A path, or the reason why there is none."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -39,10 +41,15 @@ class Path:
 
 @dataclass(frozen=True, eq=False)
 class Cone:
-    """A generalized cone: spine (2, 2) from end to end, outline (k, 2) of the free strip on both sides."""
+    """A generalized cone: spine (2, 2) from end to end. drawing: makes its outline, which only figures need."""
 
     spine: Floats
-    outline: Floats
+    drawing: Callable[[], Floats]
+
+    @cached_property
+    def outline(self) -> Floats:
+        """Corners (k, 2) of the free strip on both sides."""
+        return self.drawing()
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,16 +8,19 @@ import pytest
 import shapely
 from shapely import LineString, MultiPolygon, Polygon, box
 from shapely.geometry import mapping
+from shapely.geometry.base import BaseGeometry
 
 from backend.thin_rectangles import thin_rectangles
 from slam.world_file import rectangle_features
 from tests.stories.command_line import Told, run
 
-TWO_ROOMS = box(0, 0, 10, 6).difference(shapely.union_all([box(4.5, 0, 5.5, 2.4), box(4.5, 3.6, 5.5, 6)]))
+TWO_ROOMS = Polygon(
+    shapely.get_coordinates(box(0, 0, 10, 6) - shapely.union_all([box(4.5, 0, 5.5, 2.4), box(4.5, 3.6, 5.5, 6)]))
+)
 ROBOT = ("--robot", "rectangle:1.2x0.6")
 
 
-def write(place: Path, *features: tuple[shapely.Geometry, dict[str, Any]]) -> Path:
+def write(place: Path, *features: tuple[BaseGeometry, dict[str, Any]]) -> Path:
     """A GeoJSON file with these geometries and properties."""
     listed = [{"type": "Feature", "geometry": mapping(shape), "properties": says} for shape, says in features]
     place.write_text(json.dumps({"type": "FeatureCollection", "features": listed}), encoding="utf-8")
