@@ -21,7 +21,7 @@ def scan_of(ranges: Floats) -> Scan:
 def nearest_of(*walls: tuple[float, float]) -> Floats:
     """What walls (range and bearing of the foot) read together: the first echo counts."""
     profiles = [wall_ranges(np.asarray(wrap(BEARINGS - b)), np.array([r, b, 1.04]), BEAM) for r, b in walls]
-    return np.min([*profiles, np.full(BEARINGS.size, 9.0)], axis=0)
+    return np.asarray(np.min([*profiles, np.full(BEARINGS.size, 9.0)], axis=0), np.float64)
 
 
 @settings(deadline=None, max_examples=15)

@@ -30,7 +30,7 @@ def test_every_leaf_is_a_plain_value() -> None:
 def test_settings_are_values() -> None:
     assert Settings() == Settings()
     assert hash(Settings()) == hash(Settings())
-    poses = replace(Settings().poses, keyframe_metres=0.3)
+    poses = replace(Settings().poses, keyframe_metres=0.4)
     assert replace(Settings(), poses=poses) != Settings()
 
 
