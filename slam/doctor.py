@@ -7,14 +7,20 @@ import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib import metadata
+from importlib import import_module, metadata
+from pathlib import Path
 
 from frontend.registration import RegistrationError, load_open3d
 
 # open3d links against these; every desktop has them, a bare server does not.
 SYSTEM_LIBRARIES = {"libGL.so.1": "libgl1", "libEGL.so.1": "libegl1", "libX11.so.6": "libx11-6"}
-DISTRIBUTIONS = ("gtsam", "numpy", "scipy", "shapely", "filterpy", "numba", "matplotlib", "typer", "rich")
+DISTRIBUTIONS = (
+    "gtsam", "numpy", "scipy", "shapely", "filterpy", "numba", "matplotlib", "typer", "rich", "trimesh",
+    "starlette", "uvicorn", "websockets", "python-multipart",
+)  # fmt: skip
 REGISTRATION_DISTRIBUTIONS = ("open3d-cpu", "open3d")
+DATA = "ROOMSKETCH_DATA"
+DATASETS = Path(__file__).parents[1] / "datasets"
 
 
 @dataclass(frozen=True)
@@ -27,9 +33,28 @@ class Finding:
     says: str
 
 
+@dataclass(frozen=True)
+class Extra:
+    """What `pip install 'roomsketch[name]'` adds. modules: by the distribution that brings each."""
+
+    name: str
+    modules: dict[str, str]
+    serves: str
+
+
+EXTRAS = (
+    Extra("ros", {"rosbags": "rosbags.highlevel"}, "ROS bags and MCAP files"),
+    Extra("cad", {"ezdxf": "ezdxf"}, "drawings for CAD programs, .dxf"),
+    Extra("gis", {"pyogrio": "pyogrio"}, "GeoPackages, .gpkg"),
+    Extra("data", {"rtb-data": "rtbdata"}, "a long lidar drive to try, killian.g2o.zip"),
+    Extra("docs", {"mkdocs-material": "material", "mkdocstrings": "mkdocstrings"}, "building the documentation"),
+)
+
+
 def examine() -> list[Finding]:
     """Every finding, the needed ones first."""
-    return [_python(), *map(_distribution, DISTRIBUTIONS), _registration(), _system_libraries()]
+    needed = [_python(), *map(_distribution, DISTRIBUTIONS)]
+    return [*needed, _registration(), _system_libraries(), *map(_extra, EXTRAS), _data_folder(), _own_datasets()]
 
 
 def missing_system_libraries() -> list[str]:
@@ -94,3 +119,43 @@ def _system_libraries() -> Finding:
     packages = missing_system_libraries()
     remedy = f"registration needs them: run `apt-get install {' '.join(packages)}` as root; the rest works without"
     return Finding("libraries of open3d", not packages, False, remedy if packages else "all load")
+
+
+def _extra(extra: Extra) -> Finding:
+    """Imported, not only looked up: what is installed may be broken, and its reason is worth more than its version."""
+    subject, versions = f"extra [{extra.name}]", []
+    for distribution, module in extra.modules.items():
+        try:
+            versions.append(f"{distribution} {metadata.version(distribution)}")
+            import_module(module)
+        except metadata.PackageNotFoundError:
+            remedy = f"pip install 'roomsketch[{extra.name}]'"
+            return Finding(subject, False, False, f"{distribution} is not installed; for {extra.serves}: {remedy}")
+        except (ImportError, OSError) as reason:
+            broken = f"{distribution} cannot be imported ({reason})"
+            remedy = f"pip install --force-reinstall 'roomsketch[{extra.name}]'"
+            return Finding(subject, False, False, f"{broken}: {remedy}")
+    return Finding(subject, True, False, f"{', '.join(versions)}: {extra.serves}")
+
+
+def _data_folder() -> Finding:
+    """The folder of recordings from elsewhere: tests and benchmarks read it where it is named."""
+    named = os.environ.get(DATA)
+    if named is None:
+        lacks = "not set, so tests and benchmarks on recordings from elsewhere are left out"
+        return Finding(DATA, False, False, f"{lacks}; export {DATA}=FOLDER to have them run")
+    return _folder_of_recordings(DATA, Path(named), f"export {DATA}=FOLDER with the folder that holds them")
+
+
+def _own_datasets() -> Finding:
+    remedy = "take them from the project's repository, or make them by `roomsketch simulate`"
+    return _folder_of_recordings("datasets", DATASETS, remedy)
+
+
+def _folder_of_recordings(subject: str, folder: Path, remedy: str) -> Finding:
+    if not folder.is_dir():
+        return Finding(subject, False, False, f"{folder} is no folder: {remedy}")
+    held = sorted(path.name for path in folder.iterdir() if path.is_dir())
+    if not held:
+        return Finding(subject, False, False, f"{folder} holds no folder of recordings: {remedy}")
+    return Finding(subject, True, False, f"{folder}: {', '.join(held)}")

@@ -3,6 +3,7 @@
 from typing import Annotated
 
 import typer
+from rich.markup import escape
 from rich.table import Table
 
 from slam import doctor as check_up
@@ -18,7 +19,8 @@ def doctor(
     findings = check_up.examine()
     table = Table("", "part", "finding", box=None)
     for finding in findings:
-        table.add_row("ok" if finding.in_order else "missing", finding.subject, finding.says)
+        mark = "ok" if finding.in_order else "missing" if finding.needed else "without"
+        table.add_row(mark, escape(finding.subject), escape(finding.says))
     out.print(table)
     if any(finding.needed and not finding.in_order for finding in findings):
         raise typer.Exit(1)
