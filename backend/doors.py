@@ -58,7 +58,7 @@ def doors_of(
         np.concatenate([facing.weight, reported.weight]),
         np.concatenate([facing.view, reported.view]),
     )
-    groups = [_narrowest(seen, group) for group in _grouped(seen.jambs, settings.apart)]
+    groups = _grouped(seen.jambs, settings.apart)
     merged = sorted((_merged(seen, group, sight) for group in groups), key=lambda door: tuple(door[0].mean(axis=0)))
     return tuple(Door(f"door {i + 1}", jambs, sure, views) for i, (jambs, sure, views) in enumerate(merged))
 
@@ -178,8 +178,9 @@ def _grouped(jambs: Floats, apart: float) -> list[Ints]:
     return [np.flatnonzero(group == number) for number in np.unique(group)]
 
 
-def _narrowest(seen: Opening, group: Ints) -> Ints:
-    """Of one door's sightings, all reported ones and those pairs of tips that span it almost as shortly as can be."""
+def _sharpest(seen: Opening, group: Ints) -> Ints:
+    """The sightings that say where the jambs of one door are: those pairs of tips that span it almost as shortly as
+    can be, as the settled map knows its walls better than a pose its infrared edges; without any, the reported ones."""
     across = seen.jambs[group, 1] - seen.jambs[group, 0]
     width = np.linalg.norm(across, axis=1)
     from_map = seen.view[group] < 0
@@ -187,16 +188,15 @@ def _narrowest(seen: Opening, group: Ints) -> Ints:
         return group
     shortest = int(np.argmin(np.where(from_map, width, np.inf)))
     parallel = np.abs(across @ across[shortest]) > np.cos(np.radians(10)) * width * width[shortest]
-    return np.asarray(group[~from_map | (parallel & (width < 1.05 * width[shortest]))])
+    return np.asarray(group[from_map & parallel & (width < 1.05 * width[shortest])])
 
 
 def _merged(seen: Opening, group: Ints, sight: Sight) -> tuple[Floats, float, Ints]:
     """Jambs (2, 2) of one door, its confidence, and the views that reported it or saw through its middle."""
-    jambs, weight = seen.jambs[group], seen.weight[group]
-    reference = jambs[int(np.argmax(weight)), 1] - jambs[int(np.argmax(weight)), 0]
-    turned = np.sum((jambs[:, 1] - jambs[:, 0]) * reference, axis=1) < 0
-    jambs = np.where(turned[:, None, None], jambs[:, ::-1], jambs)
-    middle = np.median(np.repeat(jambs, weight.astype(np.int64), axis=0), axis=0)
+    sharpest = _sharpest(seen, group)
+    jambs, weight = seen.jambs[sharpest], seen.weight[sharpest]
+    turned = np.sum((jambs[:, 1] - jambs[:, 0]) * (jambs[0, 1] - jambs[0, 0]), axis=1) < 0
+    middle = np.median(np.where(turned[:, None, None], jambs[:, ::-1], jambs), axis=0)
     _, through = sight.pairs(middle.mean(axis=0)[None])
     reported = seen.view[group][seen.view[group] >= 0]
     views = np.unique(np.concatenate([through, reported]))

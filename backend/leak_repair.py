@@ -104,5 +104,5 @@ def repaired(free: MultiPolygon, bins: FaceBins, depth: float) -> MultiPolygon:
     found = leaking(free, bins, depth)
     half = 0.5 * BIN * _along(found.normals)
     start, end, back = found.middles - half, found.middles + half, depth * found.normals
-    strips = shapely.polygons(np.stack([start, end, end - back, start - back], axis=1))
-    return as_polygons(free.difference(shapely.union_all(strips))) if len(strips) else free
+    corners = np.stack([start, end, end - back, start - back], axis=1)
+    return as_polygons(free.difference(shapely.union_all(shapely.polygons(corners)))) if len(corners) else free

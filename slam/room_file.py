@@ -44,7 +44,9 @@ def read_room(path: Path) -> RoomMap:
             leak_reasons=tuple(says["reason"] for _, says in _of_kind(features, "leak")),
         )
     except KeyError as missing:
-        raise RoomFileError(f"{path}: a feature lacks the property {missing}; was it written by merge?") from missing
+        raise RoomFileError(
+            f"{path}: a feature lacks the property {missing}, which merge writes today; run merge again to read it"
+        ) from missing
 
 
 def read_features(path: Path) -> list[tuple[BaseGeometry, Properties]]:

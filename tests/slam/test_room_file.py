@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from shapely import MultiPolygon, Polygon, box
+from shapely import MultiPolygon, Point, Polygon, box
 
 from backend.room_map import Door, MapEdge, MapEdgeKind, Obstacle, RoomMap
 from slam.room_file import RoomFileError, free_space, points_of_kind, read_features, read_room, room_text
@@ -101,3 +101,8 @@ def test_what_is_no_map_is_said(tmp_path: Path, text: str, says: str) -> None:
 def test_a_map_without_provenance_is_not_taken_for_ours(tmp_path: Path) -> None:
     with pytest.raises(RoomFileError, match="lacks the property 'inferred'"):
         read_room(written(tmp_path, plan(("obstacle", box(0, 0, 1, 1)))))
+
+
+def test_a_leak_that_gives_no_reason_is_refused_with_what_to_do(tmp_path: Path) -> None:
+    with pytest.raises(RoomFileError, match=r"lacks the property 'reason'.*run merge again"):
+        read_room(written(tmp_path, plan(("free", box(0, 0, 1, 1)), ("leak", Point(0.5, 0.5)))))
