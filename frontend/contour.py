@@ -63,7 +63,8 @@ class Contour:
     points: (m, 2). kinds: (m,) ContourKind. edge_kinds: (m,) EdgeKind of the edge from point i to i + 1, cyclic.
     reading: (m,) index into the scan; fillers and the sensor's origin carry the reading before them.
     normals: (m, 2) facing the sensor on measured surface, else nan.
-    spread: (m,) standard deviation along the beam; thickness: (m,) of the surface around it, else nan; metres.
+    spread: (m,) standard deviation along the beam; thickness: (m,) of the surface around it, and offset: (m,)
+    how far before it, along the normal, that surface runs, else nan; metres.
     vertices: (v,) the points that are no filler: the same boundary with fewer points.
     """
 
@@ -74,6 +75,7 @@ class Contour:
     normals: Floats
     spread: Floats
     thickness: Floats
+    offset: Floats
     origin: Floats
     surface_thickness: float
 
@@ -96,7 +98,7 @@ class Contour:
         """The measured points with a thin line through them, for registration."""
         kept = np.flatnonzero(self.thickness <= self.surface_thickness)
         return Surface(
-            self.points[kept],
+            self.points[kept] + self.normals[kept] * self.offset[kept, None],
             self.normals[kept],
             np.maximum(self.thickness[kept], self._across(kept)),
             self.reading[kept],
@@ -122,13 +124,14 @@ def outline(fused: FusedScan, settings: ContourSettings) -> Contour:
         fused.bearings, fused.ranges, fused.spread,
         settings.surface_sureness, settings.surface_reach, settings.surface_widest,
     )  # fmt: skip
-    normals, thickness = line_fits(ends, edges == EdgeKind.REAL, reaches, np.zeros(2))
+    normals, thickness, offset = line_fits(ends, edges == EdgeKind.REAL, reaches, np.zeros(2))
     kinds, readings = _point_kinds(fused.kinds), np.arange(ends.shape[0])
     spread = np.hypot(fused.spread, fused.doubt)
     if not fused.scan.full_turn:  # the view ends at the sensor, on both sides
         ends, kinds = np.vstack([ends, np.zeros(2)]), np.append(kinds, np.uint8(ContourKind.SIDE))
         edges, readings = np.append(edges, np.uint8(EdgeKind.SIDE)), np.append(readings, readings[-1])
         spread, thickness = np.append(spread, 0.0), np.append(thickness, np.nan)
+        offset = np.append(offset, np.nan)
         normals = np.vstack([normals, np.full(2, np.nan)])
     mount = np.array(fused.scan.sensor.mount)
     return Contour(
@@ -139,6 +142,7 @@ def outline(fused: FusedScan, settings: ContourSettings) -> Contour:
         normals=transform(normals, np.array([0.0, 0.0, mount[2]])),
         spread=spread,
         thickness=thickness,
+        offset=offset,
         origin=mount[:2],
         surface_thickness=max(settings.surface_thickness, 2 * fused.scan.sensor.range_noise),
     )
@@ -160,6 +164,7 @@ def filled(outline: Contour, spacing: float) -> Contour:
         normals=np.where((step == 0)[:, None], outline.normals[owner], np.nan),
         spread=outline.spread[owner],
         thickness=np.where(step == 0, outline.thickness[owner], np.nan),
+        offset=np.where(step == 0, outline.offset[owner], np.nan),
     )
 
 

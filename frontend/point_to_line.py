@@ -142,3 +142,25 @@ def descend(
         own, own_normals, points, normals, first, corner, columns, rows, pose, passes[len(passes) - 1]
     )
     return pose, information, square, partners
+
+
+@compiled
+def shared_errors(errors: Floats, readings: Integers, lags: int) -> float:
+    """How many of the errors (p,) at rising readings (p,) are worth one that is independent of all others, 1 or more.
+
+    One and twice the sum of their correlations up to so many readings apart (Bartlett 1946).
+    """
+    square, shared = 0.0, 1.0
+    for i in range(len(errors)):
+        square += errors[i] * errors[i] / len(errors)
+    for lag in range(1, lags + 1):
+        product, pairs, j = 0.0, 0, 0
+        for i in range(len(errors)):
+            while j < len(errors) and readings[j] < readings[i] + lag:
+                j += 1
+            if j < len(errors) and readings[j] == readings[i] + lag:
+                product += errors[i] * errors[j]
+                pairs += 1
+        if pairs > 0 and square > 0:
+            shared += 2 * product / (pairs * square)
+    return max(shared, 1.0)

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frontend.local_map import CELL, Faces, LocalMap
-from frontend.point_to_line import descend
-from frontend.rigid_motion import rotation
+from frontend.point_to_line import descend, shared_errors
+from frontend.rigid_motion import rotation, transform
 from frontend.scan import Floats
 from frontend.surface import Surface
 
@@ -31,7 +31,7 @@ class RegistrationSettings:
     widths: tuple[float, ...] = (0.15, 0.06, 0.03)  # Cauchy widths, metres; larger trusts outliers more
     rounds: int = 10  # per pass; more follows a worse guess
     alike: float = 0.8  # least cosine between matched normals; larger demands more parallel faces
-    shared_beams: int = 7  # readings that share one line fit; larger believes a registration less
+    alike_beams: int = 6  # steps between readings whose errors may be alike: line fits overlap; larger believes less
     finest: float = 0.01  # metres; no surface is believed to be smoother
 
     def passes(self, spread: float) -> Floats:
@@ -82,10 +82,12 @@ def register(
         local_map.first, local_map.corner, local_map.columns, local_map.rows,
         guess.pose if start is None else start, guess.pose, guess.information, passes,
     )  # fmt: skip
-    believed = information / (max(square, spread**2, settings.finest**2) * settings.shared_beams)
+    matched = np.flatnonzero(partners >= 0)
+    errors = _errors(surface.points[matched], pose, faces, partners[matched])
+    shared = shared_errors(errors, surface.reading[matched], settings.alike_beams)
+    believed = information / (max(square, spread**2, settings.finest**2) * shared)
     middle = (information[0, 0] + information[1, 1]) / 2
     apart = float(np.hypot((information[0, 0] - information[1, 1]) / 2, information[0, 1]))
-    matched = np.flatnonzero(partners >= 0)
     return Alignment(
         pose,
         believed,
@@ -94,6 +96,12 @@ def register(
         len(matched) / max(len(partners), 1),
         max(float(middle) - apart, 0.0) / max(float(middle) + apart, 1e-12),
     )
+
+
+def _errors(points: Floats, pose: Floats, faces: Faces, partners: NDArray[np.int64]) -> Floats:
+    """How far (p,) the points (p, 2) at a pose (3,) lie before their partners' faces, metres."""
+    offsets = transform(points, pose) - faces.points[partners]
+    return np.asarray(np.einsum("ij,ij->i", offsets, faces.normals[partners]))
 
 
 def register_submaps(moving: Faces, fixed: Faces, guess: Floats, reach: float) -> Floats:

@@ -11,7 +11,8 @@ from frontend.scan import Booleans, Floats, Integers
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Measured surface in the robot's frame: points (k, 2), unit normals (k, 2) towards the sensor.
+    """Measured surface in the robot's frame: points (k, 2) on the line fits through the readings around them, unit
+    normals (k, 2) towards the sensor.
 
     spread: (k,) standard deviation across the surface, metres. reading: (k,) index into the scan.
     """
@@ -40,8 +41,9 @@ def fit_reaches(bearings: Floats, ranges: Floats, spread: Floats, surest: float,
 
 
 @compiled
-def line_fits(points: Floats, joined: Booleans, reaches: Integers, origin: Floats) -> tuple[Floats, Floats]:
-    """Normals (n, 2) and thickness (n,) of the best line through each of the points (n, 2) and its chain neighbours.
+def line_fits(points: Floats, joined: Booleans, reaches: Integers, origin: Floats) -> tuple[Floats, Floats, Floats]:
+    """Normals (n, 2), thickness (n,) and offset (n,) of the best line through each of the points (n, 2) and its
+    chain neighbours; the offset is how far before the point, along the normal, the line runs.
 
     joined: (n,) whether a point and the next (cyclically) lie on one surface. reaches: (n,) neighbours to each side.
     Of the windows around, before and behind a point the thinnest wins, so a corner keeps the normals of both its
@@ -50,6 +52,7 @@ def line_fits(points: Floats, joined: Booleans, reaches: Integers, origin: Float
     n = points.shape[0]
     normals = np.full((n, 2), np.nan)
     thickness = np.full(n, np.nan)
+    offset = np.full(n, np.nan)
     for i in range(n):
         before, after, reach = 0, 0, reaches[i]
         while before < reach and joined[(i - before - 1) % n]:
@@ -61,7 +64,7 @@ def line_fits(points: Floats, joined: Booleans, reaches: Integers, origin: Float
             whole = first == -before and last == after
             if last - first < 2 or (not whole and last - first < reach):
                 continue
-            angle, variance = _line_through(points, i + first, last - first + 1)
+            angle, variance, mx, my = _line_through(points, i + first, last - first + 1)
             # The window around the point has the firmest direction: a side must be clearly thinner to win.
             score = variance if whole else 2 * variance
             if score < best:
@@ -70,12 +73,13 @@ def line_fits(points: Floats, joined: Booleans, reaches: Integers, origin: Float
                 facing = x * (origin[0] - points[i, 0]) + y * (origin[1] - points[i, 1])
                 normals[i, 0], normals[i, 1] = (x, y) if facing > 0 else (-x, -y)
                 thickness[i] = np.sqrt(variance)
-    return normals, thickness
+                offset[i] = normals[i, 0] * (mx - points[i, 0]) + normals[i, 1] * (my - points[i, 1])
+    return normals, thickness, offset
 
 
 @compiled
-def _line_through(points: Floats, start: int, count: int) -> tuple[float, float]:
-    """Direction of the total least squares line through `count` cyclic points, and the variance across it."""
+def _line_through(points: Floats, start: int, count: int) -> tuple[float, float, float, float]:
+    """Direction of the total least squares line through `count` cyclic points, the variance across it, its middle."""
     n = points.shape[0]
     x, y = 0.0, 0.0
     for k in range(start, start + count):
@@ -88,4 +92,4 @@ def _line_through(points: Floats, start: int, count: int) -> tuple[float, float]
         xy += dx * dy
         yy += dy * dy
     across = 0.5 * (xx + yy) - np.sqrt((0.5 * (xx - yy)) ** 2 + xy * xy)
-    return 0.5 * np.arctan2(2 * xy, xx - yy), max(across, 0.0) / (count - 2)
+    return 0.5 * np.arctan2(2 * xy, xx - yy), max(across, 0.0) / (count - 2), x, y

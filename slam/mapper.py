@@ -254,7 +254,7 @@ class Mapper:
             self._decisions.append(Decision("registration", (index,), accepted=False, reason=placed.refused))
         elif gap is None:
             moved = between(last, placed.pose)
-            distance = odometry.learn(wheels, Move(moved, turned(placed.covariance, moved[2])), seconds)
+            distance = odometry.learn(wheels, Move(moved, turned(placed.measured, moved[2])), seconds)
             if distance > self.settings.odometry.slip_gate:
                 self._slip(index, wheels, moved, distance)
         return placed, gap
@@ -294,7 +294,7 @@ class Mapper:
         self._keyframes.append(Keyframe(index, old.session, percept, placed.pose))
         self._graph.add_pose(new, placed.pose)
         if placed.refused is None or self._slipped:
-            self._graph.add_motion(new - 1, new, step, placed.covariance)
+            self._graph.add_motion(new - 1, new, step, placed.measured)
         if not self._slipped:
             move = wheels_say(self._odometries[old.session], old.percept, percept)
             self._graph.add_motion(new - 1, new, move.pose, move.covariance)

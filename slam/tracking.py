@@ -13,6 +13,8 @@ from frontend.scan import Floats
 from frontend.visibility import Visibility, VisibilitySettings, look
 from slam.perception import Percept
 
+UNSEEN = 0.01  # information on a direction that registration does not see: 10 m, 10 rad
+
 
 @dataclass(frozen=True)
 class TrackingSettings:
@@ -42,6 +44,7 @@ class TrackingSettings:
 class Placed:
     """Where a scan was put: pose (3,), covariance (3, 3) in its own axes, and why registration was refused, if so.
 
+    registered: (3, 3) covariance of registration alone, without the wheels', which are a measurement of their own.
     matched: what share of the surface found a face, 0 where nothing was registered. astray: why the scan cannot have
     been taken near here at all, if so.
     """
@@ -51,6 +54,12 @@ class Placed:
     matched: float
     refused: str | None = None
     astray: str | None = None
+    registered: Floats | None = None
+
+    @property
+    def measured(self) -> Floats:
+        """(3, 3) covariance of what only this placement says: registration's, or the guess's where there was none."""
+        return self.covariance if self.registered is None else self.registered
 
 
 def turned(covariance: Floats, angle: float) -> Floats:
@@ -90,8 +99,11 @@ def track(percept: Percept, last: Floats, move: Move, recent: list[Faces], setti
     astray = _astray(percept, found.matched, seen, settings)
     if astray is not None:
         return Placed(guess, by_wheels, found.matched, astray, astray)
-    covariance: Floats = np.asarray(np.linalg.inv(found.information + prior.information), np.float64)
-    return Placed(found.pose_in_fixed, turned(covariance, -found.pose_in_fixed[2]), found.matched)
+    both, alone = (
+        turned(np.asarray(np.linalg.inv(found.information + other), np.float64), -found.pose_in_fixed[2])
+        for other in (prior.information, UNSEEN * np.eye(3))
+    )
+    return Placed(found.pose_in_fixed, both, found.matched, registered=alone)
 
 
 def _astray(percept: Percept, matched: float, seen: Visibility, settings: TrackingSettings) -> str | None:

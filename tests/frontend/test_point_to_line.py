@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import least_squares
 
 from frontend.local_map import CELL, Faces, LocalMap
-from frontend.point_to_line import descend, nearest_face, sort_into_cells
+from frontend.point_to_line import descend, nearest_face, shared_errors, sort_into_cells
 from frontend.rigid_motion import rotation, transform
 from frontend.scan import Floats
 
@@ -125,3 +125,19 @@ def test_where_nothing_is_in_reach_the_guess_stays_and_nothing_is_known() -> Non
     pose, information = descended(wall, far, start, np.eye(3), np.array([(CELL, 0.5, 0.8, 0.1, 5.0)]))
     np.testing.assert_allclose(pose, start)
     np.testing.assert_array_equal(information, 0)
+
+
+@pytest.mark.parametrize("alike", [1, 2, 4])
+def test_errors_that_neighbours_share_count_as_fewer(alike: int) -> None:
+    """Moving means of m independent errors have correlations (m − k) / m, whose sum on both sides makes m of one."""
+    rng = np.random.default_rng(0)
+    errors = np.convolve(rng.normal(0, 0.01, 4000 + alike - 1), np.ones(alike), "valid")
+    assert shared_errors(errors, np.arange(len(errors)), 6) == pytest.approx(alike, rel=0.15, abs=0.15)
+
+
+def test_only_readings_that_far_apart_are_compared() -> None:
+    errors = np.tile([0.01, 0.01, -0.01, -0.01], 50)
+    near, far = np.arange(200), 100 * np.arange(200)
+    assert shared_errors(errors, far, 6) == 1.0
+    assert shared_errors(errors, near, 1) == pytest.approx(1.0, abs=0.02)
+    assert shared_errors(np.ones(200), near, 3) == pytest.approx(7.0)

@@ -53,18 +53,14 @@ def test_a_known_motion_is_recovered_from_8_cm_and_4_degrees_off(
 
 
 @pytest.mark.parametrize("views", [1, 6])
-def test_the_covariance_is_never_too_small_and_at_most_two_and_a_half_sigmas_too_large(
-    draws: dict[int, list[tuple[Alignment, Floats]]], views: int
-) -> None:
+def test_the_covariance_is_honest(draws: dict[int, list[tuple[Alignment, Floats]]], views: int) -> None:
     """Mean squared error in units of the stated covariance: the sum over draws is χ² if the covariance is right.
 
-    Readings that share line fits are not independent, and a map of one view is noisy itself; the statement is meant
-    to be cautious. So the upper bound is the χ² one and the lower bound says how cautious it may be.
+    A map of one view is noisy itself and its noise is the same for all that lies on it, so it may say a bit less.
     """
     squares = [error @ found.information @ error for found, error in draws[views]]
-    assert np.sum(squares) < chi2.ppf(0.999, 3 * len(squares))
-    assert np.mean(squares) / 3 > 1 / 2.5**2
-    assert np.mean(np.array(squares) > chi2.ppf(0.95, 3)) < 0.1
+    assert 0.6 < np.mean(squares) / 3 < 1.6
+    assert np.mean(np.array(squares) > chi2.ppf(0.999, 3)) < 0.1
 
 
 def test_the_stated_residual_is_the_noise_of_the_sensor(draws: dict[int, list[tuple[Alignment, Floats]]]) -> None:

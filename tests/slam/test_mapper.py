@@ -85,6 +85,19 @@ def test_errors_are_within_the_stated_covariance(estimate: Estimate) -> None:
     assert np.mean(squares) < chi2.ppf(0.99, 3)
 
 
+def test_the_graph_is_told_of_each_way_as_surely_as_registration_knows_it(estimate: Estimate) -> None:
+    """Keyframe to keyframe, registration and the wheels apart: neither repeats the other, neither boasts or is shy."""
+    sums: dict[tuple[int, int], list[float]] = {}
+    for tie in estimate.ties:
+        if tie.moving == tie.fixed + 1:
+            true = between(*(TRUE[estimate.keyframes[k]] for k in (tie.fixed, tie.moving)))
+            error = between(true, tie.pose)
+            sums.setdefault((tie.fixed, tie.moving), []).append(float(error @ tie.information @ error) / 3)
+    registered = np.array([squares[0] for squares in sums.values()])
+    assert all(len(squares) == 2 for squares in sums.values())
+    assert 0.5 < np.mean(registered) < 1.7
+
+
 def test_no_proven_landmark_is_doubled(estimate: Estimate) -> None:
     """Corners of the building are at least 30 cm apart."""
     gaps = np.linalg.norm(estimate.landmarks[:, None] - estimate.landmarks[None], axis=2)
