@@ -25,12 +25,14 @@ def boundary_edges(free: MultiPolygon) -> Floats:
 
 
 def label_edges(edges: Floats, samples: Samples, counts: Counts, reach: float) -> tuple[MapEdge, ...]:
-    """Every edge (e, 2, 2) with its support by samples within `reach` metres that face the same side."""
+    """Every edge (e, 2, 2) with its support by samples within `reach` metres that face the same side.
+
+    An edge that was measured in part is cut where its measured part ends.
+    """
     if not len(edges):
         return ()
-    along = edges[:, 1] - edges[:, 0]
-    length = np.maximum(np.linalg.norm(along, axis=1), 1e-9)
-    inward = np.stack([-along[:, 1], along[:, 0]], axis=1) / length[:, None]
+    edges = _cut(edges, samples, reach)
+    inward = _inward(edges)
     edge, sample = _supports(edges, inward, samples, reach)
     views = _views_by_edge(edge, samples.view[sample], len(edges))
     offset = np.sum((samples.points[sample] - edges[edge, 0]) * inward[edge], axis=1)
@@ -48,6 +50,37 @@ def label_edges(edges: Floats, samples: Samples, counts: Counts, reach: float) -
         )
         for (start, end), seen, contradictions, wide in zip(edges, views, through, spread, strict=True)
     )
+
+
+def _cut(edges: Floats, samples: Samples, reach: float) -> Floats:
+    """The edges (f, 2, 2), stretches without a sample for four times the reach standing as edges of their own."""
+    edge, sample = _supports(edges, _inward(edges), samples, reach)
+    length = np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1)
+    unit = (edges[:, 1] - edges[:, 0]) / np.maximum(length, 1e-9)[:, None]
+    along = np.sum((samples.points[sample] - edges[edge, 0]) * unit[edge], axis=1)
+    number = np.arange(len(edges))
+    owner = np.concatenate([number, edge, number])
+    mark = np.concatenate([np.zeros(len(edges)), np.clip(along, 0.0, length[edge]), length])
+    order = np.lexsort((mark, owner))
+    owner, mark = owner[order], mark[order]
+    bare = np.flatnonzero((np.diff(mark) > 4 * reach) & (owner[1:] == owner[:-1]))
+    margin = 1.01 * reach  # the samples at its ends shall not support a bare stretch
+    first, last = mark[bare] + margin, mark[bare + 1] - margin
+    inner = (mark[bare] > 0, mark[bare + 1] < length[owner[bare]])
+    owner = np.concatenate([number, owner[bare][inner[0]], owner[bare][inner[1]], number])
+    mark = np.concatenate([np.zeros(len(edges)), first[inner[0]], last[inner[1]], length])
+    order = np.lexsort((mark, owner))
+    owner, points = owner[order], edges[owner[order], 0] + mark[order, None] * unit[owner[order]]
+    points[np.append(owner[1:] != owner[:-1], True)] = edges[:, 1]
+    joined = owner[1:] == owner[:-1]
+    return np.asarray(np.stack([points[:-1], points[1:]], axis=1)[joined])
+
+
+def _inward(edges: Floats) -> Floats:
+    """Unit normals (e, 2) towards the free side."""
+    along = edges[:, 1] - edges[:, 0]
+    length = np.maximum(np.linalg.norm(along, axis=1), 1e-9)
+    return np.asarray(np.stack([-along[:, 1], along[:, 0]], axis=1) / length[:, None])
 
 
 def _supports(edges: Floats, inward: Floats, samples: Samples, reach: float) -> tuple[Ints, Ints]:

@@ -1,6 +1,7 @@
 """Claims about the labels of the map's edges."""
 
 import numpy as np
+import pytest
 from shapely import MultiPolygon, box
 
 from backend.ballots import ballot_of
@@ -45,3 +46,18 @@ def test_contradictions_count_the_views_that_saw_through() -> None:
     floor = next(edge for edge in edges if edge.kind == MapEdgeKind.REAL)
     assert floor.contradictions == 2
     assert 0.002 < floor.spread < 0.03
+
+
+def test_an_edge_measured_in_part_is_real_only_there() -> None:
+    samples = wall_samples(np.array([1.0, 0.0]), np.array([2.0, 0.0]), 5, 0.01, np.random.default_rng(2))
+    edges = label_edges(boundary_edges(ROOM), samples, grid_of_rooms(0.0).counts(), 0.06)
+    real = [edge for edge in edges if edge.kind == MapEdgeKind.REAL]
+    assert len(edges) == 6
+    assert [(edge.start[0] - 0.94, edge.end[0] - 2.06) for edge in real] == [pytest.approx((0, 0), abs=0.06)]
+    assert {(edge.end in {other.start for other in edges}) for edge in edges} == {True}
+
+
+def test_cutting_edges_loses_no_length() -> None:
+    samples = wall_samples(np.array([1.0, 0.0]), np.array([2.0, 0.0]), 5, 0.01, np.random.default_rng(2))
+    edges = label_edges(boundary_edges(ROOM), samples, grid_of_rooms(0.0).counts(), 0.06)
+    assert sum(np.hypot(e.end[0] - e.start[0], e.end[1] - e.start[1]) for e in edges) == pytest.approx(10.0)
