@@ -36,7 +36,7 @@ Row = dict[str, Any]
 
 FINE = ConfigurationSpaceSettings(resolution=0.1)
 RAW = ConesSettings()
-SHORT = ConesSettings(caution=0.5, shortcuts=300)  # who will shorten need not stay in the middle
+SHORT = replace(RAW, shortcuts=300)
 REPEATS = 5  # of every query, for a median
 RIVALS = Path(__file__).with_name("planner_rivals.py")
 NAMES = ("room", "office", "big")
