@@ -29,9 +29,9 @@ class Trajectory:
 
 
 def tum_text(times: Floats, poses: Floats) -> str:
-    """Poses (n, 3) at times (n,) as TUM lines; microseconds and micrometres are kept."""
+    """Poses (n, 3) at times (n,) as TUM lines; microseconds and micrometres are kept, the sign of a zero is not."""
     lines = [
-        f"{time:.6f} {x:.6f} {y:.6f} 0 0 0 {np.sin(heading / 2):.9f} {np.cos(heading / 2):.9f}\n"
+        f"{time:.6f} {x:z.6f} {y:z.6f} 0 0 0 {np.sin(heading / 2):z.9f} {np.cos(heading / 2):z.9f}\n"
         for time, (x, y, heading) in zip(times, poses, strict=True)
     ]
     return "".join(lines)

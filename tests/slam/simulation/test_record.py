@@ -18,6 +18,7 @@ from slam.simulation.world import build_world
 from slam.trajectory_file import read_trajectory
 
 DATASETS = Path(__file__).parents[3] / "datasets"
+RECORDINGS = sorted(path.parent.name for path in DATASETS.glob("*/recording.toml"))
 PLAN_ROOM = box(0, 0, 3, 2)
 
 
@@ -26,8 +27,11 @@ def command_of(recording: Path) -> list[str]:
     return command.split()
 
 
-def test_the_command_in_a_recording_makes_the_same_bytes_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    shipped = DATASETS / "flynn_basement"
+@pytest.mark.parametrize("recording", RECORDINGS)
+def test_the_command_in_a_recording_makes_the_same_bytes_again(
+    recording: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shipped = DATASETS / recording
     program, verb, plan, _, sensor, _, out, _, seed = command_of(shipped)
     assert (program, verb) == ("roomsketch", "simulate")
     shutil.copytree(DATASETS / "plans", tmp_path / "datasets" / "plans")
@@ -40,7 +44,7 @@ def test_the_command_in_a_recording_makes_the_same_bytes_again(tmp_path: Path, m
     assert hashes[0] == hashes[1]
 
 
-@pytest.mark.parametrize("recording", sorted(path.parent.name for path in DATASETS.glob("*/recording.toml")))
+@pytest.mark.parametrize("recording", RECORDINGS)
 def test_every_shipped_recording_can_be_read_and_has_a_true_pose_per_scan(recording: str) -> None:
     scans = list(open_recording(DATASETS / recording, strict=True).scans)
     poses = read_trajectory(DATASETS / recording / "true.tum").poses
