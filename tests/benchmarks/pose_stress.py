@@ -121,7 +121,7 @@ def loop_row(undisturbed: Run) -> Row:
     liar = Liar(np.random.default_rng(SEED))
     with patch("slam.mapper.close_loop", liar):
         deceived = Run(undisturbed.path, undisturbed.scans)
-    told = stressed(f"{FALSE:.0%} false loops let in", deceived, undisturbed)
+    told = stressed(f"{FALSE * 100:.0f} % false loops let in", deceived, undisturbed)
     note = f"{told['note']}; {liar.false} false loops beside {liar.true} true ones, mended on the way"
     return told | {"target": undisturbed.error + UNCHANGED, "note": note}
 
