@@ -6,8 +6,8 @@ from typing import Annotated
 import typer
 
 from slam.commands.console import err, out
-from slam.exports.formats import export
-from slam.exports.product import load_product
+from slam.exports.formats import EXPORTS, export
+from slam.exports.product import ExportError, load_product
 from slam.recording_files import FACTS, readings_csv, readings_name, recording_toml, write_recording
 from slam.recordings import open_recording
 from slam.whole_output import RESULT_MARK
@@ -28,6 +28,9 @@ def convert(
         out.print(f"{', '.join(map(str, export(load_product(source), to)))}")
         return
     recording = open_recording(source, format_name)
+    if to.suffix.removeprefix(".").lower() in EXPORTS:
+        remedy = f"first `roomsketch merge {source} --out run`, then `roomsketch convert run {to}`"
+        raise ExportError(f"{to.name}: {source} is a recording, and has no map to export yet; {remedy}")
     about = {"name": recording.name, "description": f"converted from {source.name}"}
     files = {
         FACTS: recording_toml(about, recording.odometry_noise, recording.scans),

@@ -33,7 +33,9 @@ def export(product: Product, to: Path) -> list[Path]:
     known = EXPORTS.get(to.suffix.removeprefix(".").lower())
     if known is None:
         endings = ", ".join(one.suffix for one in EXPORTS.values())
-        raise ExportError(f"{to.name}: no format to export ends in {to.suffix or 'nothing'!r}; known are {endings}")
+        raise ExportError(
+            f"{to.name}: no format to export ends in {repr(to.suffix) if to.suffix else 'nothing'}; known are {endings}"
+        )
     try:
         to.parent.mkdir(parents=True, exist_ok=True)
         with TemporaryDirectory(prefix=f".{to.name}.", dir=to.parent) as making:

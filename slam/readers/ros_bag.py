@@ -4,6 +4,7 @@ Needs the extra [ros]. Of several topics of a kind the one with the most message
 """
 
 from collections import defaultdict
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -71,29 +72,39 @@ def read_ros_bag(path: Path, strict: bool) -> Recording:
 
 
 def _read(path: Path) -> Messages:
+    bag = Messages()
+    for line, logged, message in _messages(path):
+        if line.msgtype in TREES:
+            bag.parents.update({link.child_frame_id: (link.header.frame_id, link) for link in message.transforms})
+        else:
+            stamp = message.header.stamp
+            # Some drivers leave the header's time at zero: then the log's own clock must do.
+            seconds = stamp.sec + stamp.nanosec * 1e-9 or logged * 1e-9
+            bag.topics[line.msgtype].setdefault(line.topic, []).append((seconds, message))
+    return bag
+
+
+def _messages(path: Path) -> Iterator[tuple[Any, int, Any]]:
+    """Connection, nanoseconds and message of whatever is of interest, in the order of the log.
+
+    A bag's folder names its parts; only their last names count, so none can lie outside it. Damaged bytes make rosbags
+    fail in any way its decoders know.
+    """
     try:
-        from rosbags.highlevel import AnyReader, AnyReaderError  # noqa: PLC0415  # an extra: only robot logs need it
+        from rosbags.highlevel import AnyReader  # noqa: PLC0415  # an extra: only robot logs need it
         from rosbags.typesys import Stores, get_typestore  # noqa: PLC0415
     except ImportError as reason:
         raise RecordingError(f"{path.name} needs rosbags ({reason}): pip install 'roomsketch[ros]'") from reason
-    bag = Messages()
+    number = 0
     try:
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
             wanted = [line for line in reader.connections if line.msgtype in (LASER, RANGE, ODOMETRY, *TREES)]
             for line, logged, raw in reader.messages(wanted) if wanted else ():
-                message: Any = reader.deserialize(raw, line.msgtype)
-                if line.msgtype in TREES:
-                    bag.parents.update(
-                        {link.child_frame_id: (link.header.frame_id, link) for link in message.transforms}
-                    )
-                else:
-                    stamp = message.header.stamp
-                    # Some drivers leave the header's time at zero: then the log's own clock must do.
-                    seconds = stamp.sec + stamp.nanosec * 1e-9 or logged * 1e-9
-                    bag.topics[line.msgtype].setdefault(line.topic, []).append((seconds, message))
-    except (AnyReaderError, OSError) as reason:
-        raise RecordingError(f"{path} cannot be read as a bag: {reason}") from reason
-    return bag
+                yield line, logged, reader.deserialize(raw, line.msgtype)
+                number += 1
+    except Exception as reason:
+        said = f"{type(reason).__name__}: {reason}"
+        raise RecordingError(f"{path} cannot be read as a bag after {number} messages of use: {said}") from reason
 
 
 def _trail(odometry: list[tuple[float, Any]]) -> Trajectory:

@@ -17,10 +17,15 @@ STEP = 0.25  # metres: the drive of a converted floor is one such step; give pos
 def convert_mlstruct(path: Path, floor: int) -> Plan:
     """The plan of one floor of an `fp.json`, in its own metres; raises PlanError where there is no such floor."""
     try:
-        drawing = json.loads(path.read_text())
-    except (OSError, json.JSONDecodeError) as error:
-        raise PlanError(f"{path}: cannot be read as JSON: {error}") from error
-    walls, slabs = (_of_floor(drawing, kind, floor, path) for kind in ("rect", "slab"))
+        drawing = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise PlanError(f"{path} cannot be read as JSON: {error}") from error
+    try:
+        walls, slabs = (_of_floor(drawing, kind, floor, path) for kind in ("rect", "slab"))
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        shape = 'shapes "rect" and "slab" by name, each with floorID and as many x as y'
+        said = f"{type(error).__name__}: {error}"
+        raise PlanError(f"{path} is no fp.json of MLSTRUCT-FP, which holds {shape} ({said})") from error
     # Windows and doors are both gaps: beyond the slab there is nothing to see, so its rim closes the windows.
     slab = shapely.union_all([*slabs, *walls])
     outer = max((Polygon(part.exterior) for part in polygons_of(slab)), key=lambda part: part.area)
@@ -42,7 +47,8 @@ def _of_floor(drawing: dict[str, Any], kind: str, floor: int, path: Path) -> lis
     outlines = [Polygon(zip(s["x"], s["y"], strict=True)).buffer(0) for s in shapes if s["floorID"] == floor]
     if not outlines:
         known = sorted({s["floorID"] for s in shapes})
-        raise PlanError(f"{path} has no {kind} on floor {floor}, known floors are {', '.join(map(str, known))}")
+        found = f"known floors are {', '.join(map(str, known))}" if known else f"and no {kind} at all"
+        raise PlanError(f"{path} has no {kind} on floor {floor}, {found}")
     return [part for outline in outlines for part in polygons_of(outline)]
 
 

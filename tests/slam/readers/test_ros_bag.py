@@ -179,3 +179,35 @@ def test_what_is_left_out_and_what_is_missing_is_said(tmp_path: Path) -> None:
     (tmp_path / "broken.bag").write_text("no bag")
     with pytest.raises(RecordingError, match=r"broken\.bag cannot be read as a bag"):
         open_recording(tmp_path / "broken.bag")
+
+
+@pytest.mark.parametrize("suffix", [".bag", ".db3", ".mcap"])
+def test_whatever_befalls_a_bag_is_one_error_with_its_name(tmp_path: Path, suffix: str) -> None:
+    if suffix == ".bag":
+        whole = _write_ros1(tmp_path / "drive.bag", Robot(ROS1).drive()).read_bytes()
+    else:
+        storage = StoragePlugin.SQLITE3 if suffix == ".db3" else StoragePlugin.MCAP
+        whole = next(_write_ros2(tmp_path / "drive", Robot(ROS2).drive(), storage).glob(f"*{suffix}")).read_bytes()
+    generator, reasons = np.random.default_rng(0), list[str]()
+    for _ in range(30):
+        damaged = np.frombuffer(whole, np.uint8).copy()
+        damaged[generator.integers(damaged.size, size=10)] = generator.integers(256, size=10)
+        (tmp_path / f"hurt{suffix}").write_bytes(damaged[: generator.integers(1, damaged.size)].tobytes())
+        try:
+            open_recording(tmp_path / f"hurt{suffix}")
+        except RecordingError as reason:
+            reasons.append(str(reason))
+    assert len(reasons) > 10
+    assert all(f"hurt{suffix}" in reason for reason in reasons)
+
+
+def test_a_folder_that_names_parts_elsewhere_reads_nothing_outside_itself(tmp_path: Path) -> None:
+    secret = _write_ros2(tmp_path / "secret", Robot(ROS2).drive(), StoragePlugin.SQLITE3)
+    folder = _write_ros2(tmp_path / "drive", [], StoragePlugin.SQLITE3)
+    facts, part = folder / "metadata.yaml", next(secret.glob("*.db3"))
+    for outside in (f"../secret/{part.name}", str(part)):
+        facts.write_text(facts.read_text().replace("drive.db3", outside))
+        assert outside in facts.read_text()
+        with pytest.raises(RecordingError, match=r"secret\.db3"):
+            open_recording(folder)
+        facts.write_text(facts.read_text().replace(outside, "drive.db3"))

@@ -38,6 +38,13 @@ def test_a_floor_that_is_not_there_is_refused_with_those_that_are(drawing: Path)
         convert_mlstruct(drawing, 9)
 
 
+@pytest.mark.parametrize("content", ["[]", '{"rect": {"a": {"x": [1, 2], "y": [1]}}}', '{"rect": [1]}'])
+def test_json_of_another_kind_is_refused_with_what_is_looked_for(tmp_path: Path, content: str) -> None:
+    (tmp_path / "fp.json").write_text(content)
+    with pytest.raises(PlanError, match=r'is no fp\.json of MLSTRUCT-FP, which holds shapes "rect" and "slab"'):
+        convert_mlstruct(tmp_path / "fp.json", 7)
+
+
 def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
     with pytest.raises(PlanError, match="cannot be read as JSON"):
         convert_mlstruct(tmp_path / "none.json", 7)
