@@ -35,7 +35,7 @@ PLANNER_INKS = (("#d55e00", 3.5), ("#0072b2", 1.5))  # the second is drawn over 
 EDGE_STYLES = {
     EdgeKind.REAL: ("surface", INK, "solid"),
     EdgeKind.OCCLUSION: ("filler", FAKE, "dotted"),
-    EdgeKind.NO_RETURN: ("no return", FAINT, "dotted"),
+    EdgeKind.NO_RETURN: ("no return, or inferred", FAINT, "dotted"),
     EdgeKind.SIDE: ("end of the view", FAINT, "dashed"),
     EdgeKind.DOOR_ARC: ("door arc", OPENED, "solid"),
 }

@@ -97,7 +97,7 @@ def before_and_after(percept: Percept) -> Figure:
     for kind, ink, style, label in (
         (EdgeKind.REAL, INK, "solid", "surface"),
         (EdgeKind.OCCLUSION, FAKE, "dotted", "line of sight"),
-        (EdgeKind.NO_RETURN, FAINT, "dotted", "no return"),
+        (EdgeKind.NO_RETURN, FAINT, "dotted", "no return, or inferred"),
         (EdgeKind.DOOR_ARC, OPENED, "solid", "arc of an opening"),
     ):
         pieces = _edges(contour, kind)
@@ -105,7 +105,7 @@ def before_and_after(percept: Percept) -> Figure:
             after.add_collection(
                 LineCollection(list(pieces), colors=ink, linestyles=style, linewidths=1.5, label=label)
             )
-    _room(after, f"after: {len(percept.fused.openings)} openings redrawn")
+    _room(after, f"after, openings redrawn: {len(percept.fused.openings)}")
     after.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return figure
 

@@ -52,7 +52,7 @@ def test_every_figure_becomes_a_picture(tmp_path: Path) -> None:
     ("name", "promised"),
     [
         ("1_raw_boundaries", {"no return"}),
-        ("2_redrawn_boundaries", {"surface", "no return"}),
+        ("2_redrawn_boundaries", {"surface", "no return, or inferred"}),
         ("3_sketches", {"line", "corner"}),
         ("5_map", {"wall", "frontier", "door", "obstacle", "inferred obstacle", "drive", "1 landmarks"}),
         ("6_paths", {"cones"}),
