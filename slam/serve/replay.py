@@ -24,31 +24,31 @@ def replay(result: Path, truth: Truth) -> Iterator[bytes]:
     report, room = read_report(result), read_room(result / MAP)
     poses = read_trajectory(result / TRAJECTORY).poses
     landmarks = points_of_kind(read_features(result / MAP), "landmark")
-    scans = _scans(report, len(poses))
+    scenes = _scenes(result, report, len(poses))
     yield _opening(report, len(poses))
     yield poses_message(poses)
     yield room_message(room, np.ones(len(poses), np.bool_), landmarks, final=True)
     yield report_message(report)
-    if isinstance(scans, str):
-        yield pack("note", {"says": f"The scans cannot be shown: {scans}."})
+    if isinstance(scenes, str):
+        yield pack("note", {"says": f"The scans cannot be shown: {scenes}."})
         return
-    settings = toml_file.load(result / SETTINGS, Settings)
+    scans, settings = scenes
     for index, (scan, pose) in enumerate(zip(scans, poses, strict=True)):
         yield scan_message(index, perceive(scan, settings.frontend), np.asarray(pose))
     yield from truth_messages(truth, result, room, scans)
 
 
-def _scans(report: dict[str, Any], poses: int) -> tuple[Scan, ...] | str:
-    """The scans that stand in the map, or why they cannot be shown: a map is worth showing without them."""
+def _scenes(result: Path, report: dict[str, Any], poses: int) -> tuple[tuple[Scan, ...], Settings] | str:
+    """The scans that stand in the map with the run's settings, or why there are none: a map is worth showing alone."""
     try:
-        drive = recording_of(report)
-    except RecordingError as reason:
+        drive, settings = recording_of(report), toml_file.load(result / SETTINGS, Settings)
+    except (RecordingError, toml_file.TomlFileError) as reason:
         return str(reason)
     left_out = set(report.get("left_out", ()))
     scans = tuple(scan for number, scan in enumerate(drive.scans) if number not in left_out)
     if len(scans) != poses:
         return f"the result has {poses} poses, but its recording now has {len(scans)} scans for them"
-    return scans
+    return scans, settings
 
 
 def _opening(report: dict[str, Any], scans: int) -> bytes:

@@ -1,6 +1,6 @@
 // The overlay: what changes with every move of the pointer, drawn over the scene each frame it changes.
 
-import { dot, rings } from "./layers.js";
+import { dot, rings } from "./strokes.js";
 import { middleOf } from "./pointing.js";
 
 export function paintOverlay(canvas, camera, { book, shown, inks, thing, views, ends, answers, cross, ratio }) {

@@ -1,6 +1,6 @@
 // Pointing: what lies under the cursor, and the words that tell where it comes from.
 
-import { bodies } from "./layers.js";
+import { bodies } from "./map_layers.js";
 
 const REACH = 9; // CSS pixels
 

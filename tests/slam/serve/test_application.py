@@ -1,6 +1,7 @@
 """The routes, asked as a browser and as a stranger would ask them."""
 
 import json
+import shutil
 import threading
 import time
 from collections.abc import Iterator
@@ -19,6 +20,7 @@ from slam.serve.application import application
 from slam.serve.door import address_of, open_door
 from slam.serve.gallery import Gallery, Shown
 from slam.serve.messages import unpack
+from slam.serve.replay import replay
 from slam.serve.truth import Truth
 from slam.serve.uploads import Limits
 from tests.stories.command_line import run
@@ -186,3 +188,13 @@ def test_a_sender_who_never_ends_is_given_up(client: httpx.Client) -> None:
 
     form = {"Content-Type": "multipart/form-data; boundary=x"}
     assert client.post("runs", content=slow(), headers=form).status_code == 408
+
+
+def test_a_result_with_settings_of_another_version_shows_its_map_and_says_why_without_scans(
+    result: Path, tmp_path: Path
+) -> None:
+    older = Path(shutil.copytree(result, tmp_path / "older"))
+    (older / "settings.toml").write_text("[merging]\nbygone = 1\n")
+    told = [unpack(message)[0] for message in replay(older, Truth.beside(BASEMENT))]
+    assert [message["kind"] for message in told] == ["opening", "poses", "room", "report", "note"]
+    assert "The scans cannot be shown: settings.toml: unknown key merging.bygone" in told[-1]["says"]
