@@ -179,26 +179,26 @@ def _grouped(jambs: Floats, apart: float) -> list[Ints]:
 
 
 def _sharpest(seen: Opening, group: Ints) -> Ints:
-    """The sightings that say where the jambs of one door are: those pairs of tips that span it almost as shortly as
-    can be, as the settled map knows its walls better than a pose its infrared edges; without any, the reported ones."""
+    """The sightings that say where the jambs of one door are: the reported ones, as the infrared that finds them is
+    sharper than the wide beam it goes with; without any, the pairs of tips that span it most shortly."""
+    reported = group[seen.view[group] >= 0]
+    if len(reported):
+        return np.asarray(reported)
     across = seen.jambs[group, 1] - seen.jambs[group, 0]
     width = np.linalg.norm(across, axis=1)
-    from_map = seen.view[group] < 0
-    if not from_map.any():
-        return group
-    shortest = int(np.argmin(np.where(from_map, width, np.inf)))
+    shortest = int(np.argmin(width))
     parallel = np.abs(across @ across[shortest]) > np.cos(np.radians(10)) * width * width[shortest]
-    return np.asarray(group[from_map & parallel & (width < 1.05 * width[shortest])])
+    return np.asarray(group[parallel & (width < 1.05 * width[shortest])])
 
 
 def _merged(seen: Opening, group: Ints, sight: Sight) -> tuple[Floats, float, Ints]:
     """Jambs (2, 2) of one door, its confidence, and the views that reported it or saw through its middle."""
     sharpest = _sharpest(seen, group)
-    jambs, weight = seen.jambs[sharpest], seen.weight[sharpest]
+    jambs = seen.jambs[sharpest]
     turned = np.sum((jambs[:, 1] - jambs[:, 0]) * (jambs[0, 1] - jambs[0, 0]), axis=1) < 0
     middle = np.median(np.where(turned[:, None, None], jambs[:, ::-1], jambs), axis=0)
     _, through = sight.pairs(middle.mean(axis=0)[None])
     reported = seen.view[group][seen.view[group] >= 0]
     views = np.unique(np.concatenate([through, reported]))
-    evidence = weight.max() + len(reported) + min(len(through), 4) / 2
+    evidence = seen.weight[group].max() + len(reported) + min(len(through), 4) / 2
     return middle, float(evidence / (evidence + 1)), views

@@ -1,7 +1,7 @@
 """Hidden objects: what the views enclose without anyone seeing it whole (Flynn 1988, §4.1, Figs 11–12).
 
-A hole of the free space is an object. It is measured if its boundary is mostly surface somebody saw, and
-inferred if it is mostly line of sight: "the robot should infer that a small object lies in the middle of the room".
+A hole of the free space is an object. It is measured if its boundary is mostly surface somebody saw, and inferred if
+it is mostly line of sight; a notch nobody saw is inferred unless it is a mere shadow of something else.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,9 @@ from scipy.spatial import cKDTree
 from shapely import MultiPolygon, Polygon
 
 from backend.contours import as_polygons
-from backend.room_map import MapEdge, MapEdgeKind, Obstacle
+from backend.occluders import Rim, occluders, rims_of
+from backend.room_map import Door, MapEdge, MapEdgeKind, Obstacle
+from backend.sight import Sight
 
 Floats = NDArray[np.float64]
 
@@ -29,6 +31,8 @@ class ObjectSettings:
     real_share: float = 0.3  # larger asks for more seen surface before an object counts as measured
     pocket: float = 0.30  # metres; larger infers objects from wider notches in the boundary
     least_pocket: float = 0.04  # m²; larger infers only bigger objects from notches
+    looked_at: float = 0.5  # share of a notch's rim; larger takes more notches for shadows of what stands before them
+    least: float = 0.01  # m²; larger names only bigger objects: a lone repaired piece of face is none
 
 
 def without_slivers(free: MultiPolygon, surface: Floats, reach: float, settings: ObjectSettings) -> MultiPolygon:
@@ -46,14 +50,42 @@ def _measured(hole: Polygon, surface: cKDTree, reach: float) -> bool:
     return bool(np.isfinite(distance).any())
 
 
-def objects_in(free: MultiPolygon, edges: tuple[MapEdge, ...], settings: ObjectSettings) -> tuple[Obstacle, ...]:
-    """Measured and inferred objects: holes of the free space, and pockets of its outer boundary that nobody saw."""
+def objects_in(
+    free: MultiPolygon, edges: tuple[MapEdge, ...], sight: Sight, settings: ObjectSettings
+) -> tuple[Obstacle, ...]:
+    """Measured and inferred objects: holes of the free space, and of its outer boundary the pockets that nobody saw
+    and the bodies that cast the shadows, closed."""
     holes = [Polygon(ring) for part in free.geoms for ring in part.interiors]
-    things = [hole for hole in holes if hole.area <= settings.largest and not _is_wall(hole, settings)]
+    things = [hole for hole in holes if settings.least <= hole.area <= settings.largest]
     tree = shapely.STRtree([shapely.LineString([edge.start, edge.end]) for edge in edges])
-    judged = [_judged(thing, tree, edges, settings) for thing in things]
+    judged = [_judged(thing, tree, edges, settings) for thing in things if not _is_wall(thing, settings)]
+    rims = rims_of(free, edges, sight)
     pockets = [_judged(pocket, tree, edges, settings) for pocket in _pockets(free, settings)]
-    return tuple(judged + [pocket for pocket in pockets if pocket.inferred])
+    hidden = [p for p in pockets if p.inferred and _looked_at(p.outline, rims) >= settings.looked_at]
+    closed = [_closed(body, tree, edges) for body in occluders(free, rims) if body.area >= settings.least_pocket]
+    known = shapely.union_all([thing.outline for thing in (*judged, *closed)])
+    return tuple(judged + closed + [pocket for pocket in hidden if not pocket.outline.intersects(known)])
+
+
+def _looked_at(pocket: Polygon, rims: list[Rim]) -> float:
+    """Which share of a pocket's rim some view saw face on: what is seen along lines of sight only is a shadow."""
+    outline = shapely.buffer(pocket.exterior, 1e-2)
+    shapely.prepare(outline)
+    flags = np.concatenate([rim.looked_at[shapely.contains_xy(outline, rim.middles)] for rim in rims])
+    return float(flags.mean()) if len(flags) else 0.0
+
+
+def _closed(body: Polygon, tree: shapely.STRtree, edges: tuple[MapEdge, ...]) -> Obstacle:
+    """A body seen in part as an inferred object, with the views that measured its front."""
+    near = tree.query(body.buffer(1e-3), predicate="intersects")
+    views = np.unique(np.concatenate([np.empty(0, dtype=np.int64), *(edges[int(i)].views for i in near)]))
+    return Obstacle(body, True, len(views), views)
+
+
+def apart_from(objects: tuple[Obstacle, ...], doors: tuple[Door, ...], reach: float) -> tuple[Obstacle, ...]:
+    """The objects without those inferred ones that a door's jamb lies within `reach` metres of: ends of walls."""
+    jambs = shapely.MultiPoint(np.concatenate([np.empty((0, 2)), *(door.jambs for door in doors)]))
+    return tuple(thing for thing in objects if not (thing.inferred and thing.outline.dwithin(jambs, reach)))
 
 
 def _is_wall(hole: Polygon, settings: ObjectSettings) -> bool:

@@ -13,7 +13,7 @@ from backend.decisions import decisions_of
 from backend.doors import DoorSettings, Opening, doors_of
 from backend.evidence import Counts
 from backend.far_ground import far_ground
-from backend.hidden_objects import ObjectSettings, objects_in, without_slivers
+from backend.hidden_objects import ObjectSettings, apart_from, objects_in, without_slivers
 from backend.leak_alarm import alarms, why
 from backend.leak_repair import closed, open_bins, repaired, standing, supported_bins
 from backend.provenance import boundary_edges, label_edges
@@ -77,9 +77,10 @@ def read_map(
     free = _known_ground(free, views.origins, settings.least_area)
     free = repaired(without_slivers(free, samples.points, settings.reach, settings.objects), bins, settings.panel)
     edges = label_edges(boundary_edges(free), samples.thinned(settings.spacing), counts, settings.reach)
-    objects = objects_in(free, edges, settings.objects)
-    walls = as_polygons(shapely.union_all([free, *(thing.outline for thing in objects)]))
+    objects = objects_in(free, edges, sight, settings.objects)
+    walls = as_polygons(shapely.union_all([free, *(thing.outline for thing in objects if not thing.inferred)]))
     doors = doors_of(free, walls, _reported(views), sight, settings.doors)
+    objects = apart_from(objects, doors, settings.doors.beside)
     safety = as_polygons(free.buffer(-settings.inset, join_style="mitre"))
     decided = _decisions(views, (mask, counts), sight, edges, settings)
     inferred = tuple(_inferred(thing, sight) for thing in objects if thing.inferred)

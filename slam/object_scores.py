@@ -13,6 +13,8 @@ from backend.room_map import Door, Obstacle
 
 Floats = NDArray[np.float64]
 JAMB = 0.15  # metres both jambs may be off
+HALF = 0.5  # of an obstacle's outline, that must be seen before its back can be inferred
+NEXT_TO = 0.005  # metres
 OVERLAP = 0.25  # intersection over union that makes two outlines the same object
 
 
@@ -30,7 +32,8 @@ class DoorScores:
 class ObstacleScores:
     """Obstacles that overlap a true one by a quarter; nan where there was nothing to find or nothing claimed.
 
-    inferred_recall: of the true ones that no measured obstacle explains.
+    measured_recall: of the true ones that seen ground encloses. inferred_recall: of these and of those that stand free
+    and were seen by half at least, the ones that no measured obstacle explains; a body seen by less has any size.
     """
 
     measured_precision: float
@@ -61,22 +64,35 @@ def door_scores(doors: tuple[Door, ...], true_jambs: Floats) -> DoorScores:
 
 
 def obstacle_scores(
-    obstacles: tuple[Obstacle, ...], true_obstacles: tuple[Polygon, ...], seen: BaseGeometry
+    obstacles: tuple[Obstacle, ...], true_obstacles: tuple[Polygon, ...], free: BaseGeometry, seen: BaseGeometry
 ) -> ObstacleScores:
-    """Obstacles of the map against those true ones that stand free, apart from the walls, by seen ground."""
-    islands = [Polygon(ring) for part in shapely.get_parts(seen) for ring in part.interiors]
-    standing = [thing for thing in true_obstacles if any(thing.within(hole.buffer(1e-3)) for hole in islands)]
+    """Obstacles of the map against those true ones that stand in free ground apart from the walls, by seen ground."""
+    standing = _within_holes(true_obstacles, seen)
+    half_seen = [thing for thing in _within_holes(true_obstacles, free) if _share_seen(thing, seen) >= HALF]
+    hidden = [thing for thing in half_seen if not any(thing is other for other in standing)]
     measured = [thing.outline for thing in obstacles if not thing.inferred]
     inferred = [thing.outline for thing in obstacles if thing.inferred]
-    by_measured, by_inferred = _matches(measured, standing), _matches(inferred, standing)
-    left = ~by_measured.any(axis=0)
+    findable = standing + hidden
+    by_measured, by_inferred = _matches(measured, findable), _matches(inferred, findable)
+    left, enclosed = ~by_measured.any(axis=0), np.arange(len(findable)) < len(standing)
     return ObstacleScores(
         measured_precision=_share(int(_matches(measured, list(true_obstacles)).any(axis=1).sum()), len(measured)),
-        measured_recall=_share(int(by_measured.any(axis=0).sum()), len(standing)),
+        measured_recall=_share(int((by_measured.any(axis=0) & enclosed).sum()), len(standing)),
         inferred_precision=_share(int(_matches(inferred, list(true_obstacles)).any(axis=1).sum()), len(inferred)),
         inferred_recall=_share(int((by_inferred.any(axis=0) & left).sum()), int(left.sum())),
-        recall=_share(int((by_measured.any(axis=0) | by_inferred.any(axis=0)).sum()), len(standing)),
+        recall=_share(int((by_measured.any(axis=0) | by_inferred.any(axis=0)).sum()), len(findable)),
     )
+
+
+def _within_holes(things: tuple[Polygon, ...], ground: BaseGeometry) -> list[Polygon]:
+    """The things that ground encloses."""
+    islands = [Polygon(ring).buffer(1e-3) for part in shapely.get_parts(ground) for ring in part.interiors]
+    return [thing for thing in things if any(thing.within(hole) for hole in islands)]
+
+
+def _share_seen(thing: Polygon, seen: BaseGeometry) -> float:
+    """Which share of a thing's outline borders on seen ground."""
+    return float(thing.exterior.intersection(seen.buffer(NEXT_TO)).length / thing.exterior.length)
 
 
 def _matches(outlines: list[Polygon], true: list[Polygon]) -> NDArray[np.bool_]:
