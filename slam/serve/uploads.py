@@ -23,17 +23,6 @@ from slam.serve.growth import Errand, grow
 MEGABYTE = 1 << 20
 BLOCK = 64 << 10
 ENDINGS = (".log", ".csv", ".txt", ".toml", ".geojson", ".tum", ".bag", ".mcap", ".db3", ".g2o")  # or those with .gz
-    ".log",
-    ".csv",
-    ".txt",
-    ".toml",
-    ".geojson",
-    ".tum",
-    ".bag",
-    ".mcap",
-    ".db3",
-    ".g2o",
-)  # each may end in .gz too
 LONGEST_NAME = 100
 
 
