@@ -4,7 +4,7 @@ Poses: `odometry`, `loop_closure`, `landmark_map`, `factor_graph`, `joint_refine
 What a view says: `view`, `surfaces`, `samples`, `ballots`, `sight`.
 Merging: `polygon_merging` (the verb), `settling`, `cell_lines`, `wall_faces`, `snapping`, `evidence`, `far_ground`,
 `contours`.
-The map: `room_map` (the noun), `map_reading`, `provenance`, `leak_repair`, `leak_alarm`, `hidden_objects`, `doors`,
-`decisions`.
+The map: `room_map` (the noun), `map_reading`, `provenance`, `leak_repair`, `leak_alarm`, `hidden_objects`, `occluders`,
+`doors`, `decisions`.
 From the map on: `next_view`, `thin_rectangles`.
 """

@@ -30,7 +30,7 @@ class ObjectSettings:
     longest: float = 1.5  # metres; larger lets longer thin things pass as objects
     real_share: float = 0.3  # larger asks for more seen surface before an object counts as measured
     pocket: float = 0.30  # metres; larger infers objects from wider notches in the boundary
-    least_pocket: float = 0.04  # m²; larger infers only bigger objects from notches
+    least_pocket: float = 0.04  # m²; larger infers only bigger objects
     looked_at: float = 0.5  # share of a notch's rim; larger takes more notches for shadows of what stands before them
     least: float = 0.01  # m²; larger names only bigger objects: a lone repaired piece of face is none
 
@@ -58,7 +58,8 @@ def objects_in(
     holes = [Polygon(ring) for part in free.geoms for ring in part.interiors]
     things = [hole for hole in holes if settings.least <= hole.area <= settings.largest]
     tree = shapely.STRtree([shapely.LineString([edge.start, edge.end]) for edge in edges])
-    judged = [_judged(thing, tree, edges, settings) for thing in things if not _is_wall(thing, settings)]
+    found = [_judged(thing, tree, edges, settings) for thing in things if not _is_wall(thing, settings)]
+    judged = [thing for thing in found if not thing.inferred or thing.outline.area >= settings.least_pocket]
     rims = rims_of(free, edges, sight)
     pockets = [_judged(pocket, tree, edges, settings) for pocket in _pockets(free, settings)]
     hidden = [p for p in pockets if p.inferred and _looked_at(p.outline, rims) >= settings.looked_at]

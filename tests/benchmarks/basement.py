@@ -4,6 +4,8 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+from shapely import MultiPolygon, Polygon
+
 from slam.pipeline import Merged, merge_scans
 from slam.recordings import open_recording
 from slam.room_file import free_space
@@ -41,6 +43,8 @@ def rows() -> list[Row]:
             overlaps,
             "higher",
         ),
+        row("the round obstacle, closed: its IoU", _closed(merged, free), "", 0.25, {}, "higher"),
+        row("objects inferred", sum(thing.inferred for thing in merged.room.obstacles), "", 1.0, {}, "lower"),
         row("false free area", merged.room.free.difference(free).area, "m²", None, {}, "lower"),
         row("whole run", min(seconds), "s", None, {}, "lower"),
         *(row(f"stage {stage}", _least(runs, stage), "s", None, {}, "lower") for stage in merged.timings),
@@ -53,6 +57,13 @@ def row(name: str, value: float, unit: str, target: float | None, peers: dict[st
         "part": "basement", "name": name, "value": value, "unit": unit, "better": better, "target": target,
         "peers": peers, "runs": RUNS, "note": "three views; the best of the runs",
     }  # fmt: skip
+
+
+def _closed(merged: Merged, free: MultiPolygon) -> float:
+    """The best overlap of an object of the map with the roundest body that stands in the basement."""
+    bodies = [Polygon(ring) for part in free.geoms for ring in part.interiors]
+    body = max(bodies, key=lambda hole: hole.area / hole.length**2)
+    return max((overlap(thing.outline, body) for thing in merged.room.obstacles), default=0.0)
 
 
 def _least(runs: list[Merged], stage: str) -> float:

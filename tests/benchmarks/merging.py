@@ -69,6 +69,8 @@ def _rows_at(noise: str, level: int, ours: list[MapScores], others: dict[str, li
     """Rows of every measure at one noise level; the means over the plans."""
     table: list[Row] = []
     for name, better in MEASURES.items():
+        if not _asked(name, ours):
+            continue
         target = TARGETS[name][level] if name in TARGETS else None
         peers = {peer: _mean(name, scores) for peer, scores in others.items()} if name in COMPARED else {}
         note = f"mean of {len(ours)} plans, {VIEWS} lidar views"
@@ -76,6 +78,13 @@ def _rows_at(noise: str, level: int, ours: list[MapScores], others: dict[str, li
     return table
 
 
+def _asked(name: str, scores: list[MapScores]) -> bool:
+    """Whether any of the plans names doors or obstacles of its own, for the measures of these."""
+    found = next((told for kind, told in NAMED.items() if kind in name), None)
+    return found is None or not all(np.isnan(VALUES[found](score)) for score in scores)
+
+
+NAMED = {"doors": "doors found", "obstacle": "obstacle recall"}
 MEASURES = {
     "IoU": "higher", "boundary F1 at 5 cm": "higher", "wall breach": "lower", "chamfer": "lower",
     "worst IoU": "higher", "corner recall": "higher", "doors found": "higher", "doors right": "higher",

@@ -81,6 +81,15 @@ def test_inferred_and_measured_obstacles_are_scored_apart() -> None:
     assert (scores.measured_recall, scores.inferred_recall, scores.recall) == (0, 1, 1)
 
 
+def test_of_a_body_seen_by_half_the_back_may_be_inferred_and_of_less_nothing_is_asked() -> None:
+    behind, beside = box(1.0, 2.9, 1.8, 4), box(0.5, 2.4, 2.4, 4)
+    for hidden, recall in ((behind, 1.0), (beside, np.nan)):
+        truth = MapTruth(FREE, FREE.difference(hidden), JAMBS, (TABLE,))
+        scores = score_map(map_of(FREE.difference(hidden), (), (thing(TABLE, True),)), truth).obstacles
+        assert np.isnan(scores.measured_recall)
+        assert scores.inferred_recall == pytest.approx(recall, nan_ok=True)
+
+
 def test_doors_are_paired_one_to_one_within_fifteen_centimetres() -> None:
     pair = (door([[3.05, 1.55], [3.05, 2.4]]), door([[3.05, 1.5], [3.05, 2.7]]))
     scores = score_map(map_of(FREE, pair), TRUTH).doors

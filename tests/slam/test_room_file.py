@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from shapely import MultiPolygon, Point, Polygon, box
+from shapely import MultiPolygon, Polygon, box
 
 from backend.room_map import Door, MapEdge, MapEdgeKind, Obstacle, RoomMap
 from slam.room_file import RoomFileError, free_space, points_of_kind, read_features, read_room, room_text
@@ -105,4 +105,4 @@ def test_a_map_without_provenance_is_not_taken_for_ours(tmp_path: Path) -> None:
 
 def test_a_leak_that_gives_no_reason_is_refused_with_what_to_do(tmp_path: Path) -> None:
     with pytest.raises(RoomFileError, match=r"lacks the property 'reason'.*run merge again"):
-        read_room(written(tmp_path, plan(("free", box(0, 0, 1, 1)), ("leak", Point(0.5, 0.5)))))
+        read_room(written(tmp_path, plan(("free", box(0, 0, 1, 1)), ("leak", box(0, 0, 1, 1)))))
