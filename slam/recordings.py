@@ -5,7 +5,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from frontend.scan import Scan
-from frontend.scan import Scan
 from slam.readers.carmen import read_carmen
 from slam.readers.crazyflie import COLUMNS, read_crazyflie
 from slam.readers.ranges_csv import read_ranges_csv
@@ -53,30 +52,7 @@ def open_together(paths: Sequence[Path], format_name: str | None = None, *, stri
         if late >= 0:
             # Two robots may drive at the same time, but a trajectory has one clock.
             notes.append(
-                DamagedLine(drive.name, 1, f"it overlaps the drive before it: all times are {late + 1:.3f} s later")
-            )
-        starts.append(len(scans))
-        scans += [replace(scan, time=scan.time + late + 1) if late >= 0 else scan for scan in drive.scans]
-    name = " and ".join(drive.name for drive in drives)
-    return Recording(name, tuple(scans), tuple(notes), drives[0].odometry_noise, starts=tuple(starts[1:]))
-
-
-def open_together(paths: Sequence[Path], format_name: str | None = None, *, strict: bool = False) -> Recording:
-    """Several recordings as one, drive after drive by the clock; RecordingError says which is none."""
-    drives = [open_recording(path, format_name, strict=strict) for path in paths]
-    if len(drives) == 1:
-        return drives[0]
-    drives.sort(key=lambda drive: drive.scans[0].time)
-    scans: list[Scan] = []
-    notes: list[DamagedLine] = []
-    starts: list[int] = []
-    for drive in drives:
-        notes += drive.damaged
-        late = scans[-1].time - drive.scans[0].time if scans else -1.0
-        if late >= 0:
-            # Two robots may drive at the same time, but a trajectory has one clock.
-            notes.append(
-                DamagedLine(drive.name, 1, f"it overlaps the drive before it: all times are {late + 1:.3f} s later")
+                DamagedLine(drive.name, None, f"it overlaps the drive before it: all times are {late + 1:.3f} s later")
             )
         starts.append(len(scans))
         scans += [replace(scan, time=scan.time + late + 1) if late >= 0 else scan for scan in drive.scans]
