@@ -15,6 +15,7 @@ Floats = NDArray[np.float64]
 JAMB = 0.15  # metres both jambs may be off
 HALF = 0.5  # of an obstacle's outline, that must be seen before its back can be inferred
 NEXT_TO = 0.005  # metres
+APART = 0.99  # of its outline borders on free ground: a cupboard against a wall is a piece of the wall
 OVERLAP = 0.25  # intersection over union that makes two outlines the same object
 
 
@@ -67,8 +68,9 @@ def obstacle_scores(
     obstacles: tuple[Obstacle, ...], true_obstacles: tuple[Polygon, ...], free: BaseGeometry, seen: BaseGeometry
 ) -> ObstacleScores:
     """Obstacles of the map against those true ones that stand in free ground apart from the walls, by seen ground."""
-    standing = _within_holes(true_obstacles, seen)
-    half_seen = [thing for thing in _within_holes(true_obstacles, free) if _share_seen(thing, seen) >= HALF]
+    apart = [thing for thing in true_obstacles if _share_seen(thing, free) > APART]
+    standing = _within_holes(apart, seen)
+    half_seen = [thing for thing in apart if _share_seen(thing, seen) >= HALF]
     hidden = [thing for thing in half_seen if not any(thing is other for other in standing)]
     measured = [thing.outline for thing in obstacles if not thing.inferred]
     inferred = [thing.outline for thing in obstacles if thing.inferred]
@@ -84,7 +86,7 @@ def obstacle_scores(
     )
 
 
-def _within_holes(things: tuple[Polygon, ...], ground: BaseGeometry) -> list[Polygon]:
+def _within_holes(things: list[Polygon], ground: BaseGeometry) -> list[Polygon]:
     """The things that ground encloses."""
     islands = [Polygon(ring).buffer(1e-3) for part in shapely.get_parts(ground) for ring in part.interiors]
     return [thing for thing in things if any(thing.within(hole) for hole in islands)]
