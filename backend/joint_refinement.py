@@ -5,15 +5,19 @@ line that nobody knows; eliminating its two parameters leaves an equation among 
 stays in as its own chain, or a smooth corridor would slide along itself.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, eye_array
-from scipy.sparse.linalg import LinearOperator, cg, splu
+from scipy.sparse.linalg import splu
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
+
+
+SETTLED = 1e-4  # of the right side: what conjugate gradients may leave
 
 
 class RefinementError(Exception):
@@ -133,17 +137,31 @@ def _solve(own: csr_array, through: csr_array, gradient: Floats) -> Floats:
     def apply(v: Floats) -> Floats:
         return np.asarray(own @ v - through_t @ (through @ v))
 
-    shape = (size - 3, size - 3)
-    moved, unsettled = cg(
-        LinearOperator(shape, matvec=apply),
-        gradient[3:],
-        rtol=1e-4,
-        maxiter=300,
-        M=LinearOperator(shape, matvec=nearly.solve),
-    )
-    if unsettled:
-        raise RefinementError(f"the joint refinement of {size // 3} poses did not settle in {unsettled} steps")
-    return np.concatenate([np.zeros(3), moved])
+    return np.concatenate([np.zeros(3), _conjugate_gradients(apply, nearly.solve, gradient[3:])])
+
+
+def _conjugate_gradients(
+    apply: Callable[[Floats], Floats], nearly: Callable[[Floats], Floats], right: Floats
+) -> Floats:
+    """The solution (n,) of apply(x) = right, preconditioned by `nearly`; as many steps as unknowns at most.
+
+    Sums instead of dot products: those of a threaded BLAS differ from run to run, and its threads cost more than they
+    give at this size.
+    """
+    found, rest = np.zeros_like(right), right.copy()
+    nearest = nearly(rest)
+    along, product = nearest, float(np.sum(rest * nearest))
+    enough = SETTLED**2 * float(np.sum(right * right))
+    for _ in range(len(right)):
+        if float(np.sum(rest * rest)) <= enough:
+            return found
+        pulled = apply(along)
+        step = product / float(np.sum(along * pulled))
+        found, rest = found + step * along, rest - step * pulled
+        nearest = nearly(rest)
+        product, before = float(np.sum(rest * nearest)), product
+        along = nearest + product / before * along
+    raise RefinementError(f"the joint refinement of {len(right) // 3 + 1} poses did not settle in {len(right)} steps")
 
 
 @dataclass(frozen=True, eq=False)

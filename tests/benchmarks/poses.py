@@ -19,7 +19,7 @@ from backend.estimate import Estimate
 from frontend.local_map import Faces
 from frontend.rigid_motion import transform
 from frontend.scan import Floats, Scan
-from slam.mapper import Mapper
+from slam.mapper import Mapper, MapperSettings
 from slam.recordings import open_recording
 from slam.settings import Settings
 from slam.trajectory_scores import (
@@ -31,12 +31,13 @@ from slam.trajectory_scores import (
     read_relations,
     relation_errors,
 )
+from tests.benchmarks.pose_costs import WARM_UP, peak_megabytes, start_costs
+from tests.benchmarks.pose_stress import ABLATIONS, FALSE_SHARE, STRESSES, spoilt, with_false_loops
 
 LOGS = {"intel": "sparse", "intel_dense": "dense"}  # and what the file of the peers calls them
 ELSEWHERE = "peers: given figures, measured elsewhere on another machine with the same log and relations"
 APART = 60.0  # seconds between two visits of one wall
 NEAR = 0.3  # metres between faces of two visits that are taken for one wall
-WARM_UP = 120  # scans: enough to compile every loop and to load what closes loops
 
 Row = dict[str, Any]
 
@@ -55,6 +56,7 @@ def rows() -> list[Row]:
     found: list[Row] = []
     for log in LOGS:
         found += relation_rows(folder, log)
+    found += stress_rows(folder / "intel") + cost_rows(folder / "intel")
     return found + camera_rows(folder / "lego_arena") + closure_rows(folder / "aces" / "aces.log.gz")
 
 
@@ -63,7 +65,7 @@ def relation_rows(folder: Path, log: str) -> list[Row]:
     path = folder / "intel" / f"{log}.log.gz"
     clock = process_time()
     scans = open_recording(path).scans
-    mapper, estimate = mapped(scans)
+    mapper, estimate, thirds = mapped_in_thirds(scans)
     seconds = process_time() - clock
     relations = read_relations(folder / "intel" / f"{log}.relations")
     metres, radians = relation_errors(track_of(path, scans, estimate.poses), relations)
@@ -78,10 +80,12 @@ def relation_rows(folder: Path, log: str) -> list[Row]:
         )
     ]
     turns = Spread.of(np.degrees(radians))
+    shares = np.array(list(mapper.timings.values())) / sum(mapper.timings.values())
     stages = [
-        row(f"{log}: {stage}", value, "s", {}, "wall clock, part of the way from log to poses")
-        for stage, value in mapper.timings.items()
+        row(f"{log}: {stage}", float(share) * seconds, "s CPU", {}, "its share of the way from log to poses")
+        for stage, share in zip(mapper.timings, shares, strict=True)
     ]
+    flat = row(f"{log}: time per scan, last third over first", thirds[2] / thirds[0], "", {}, f"{len(scans)} scans")
     return [
         *errors,
         row(f"{log}: mean rotation error", turns.mean, "°", {}, f"{turns.count} relations"),
@@ -93,7 +97,41 @@ def relation_rows(folder: Path, log: str) -> list[Row]:
             f"without imports and compilation; {ELSEWHERE}",
         ),
         *stages,
+        flat | {"target": 1.5},
     ]
+
+
+def cost_rows(folder: Path) -> list[Row]:
+    """What comes on top of the way from log to poses."""
+    imported, compiled = start_costs(folder / "intel.log.gz")
+    megabytes = peak_megabytes(folder / "intel_dense.log.gz")
+    return [
+        row("imports", imported, "s CPU", {}, "in a fresh process"),
+        row("compilation", compiled, "s CPU", {}, "the first time ever; kept on disk for all later runs"),
+        row("intel_dense: peak memory", megabytes, "MB", {}, "the whole process") | {"target": 700.0},
+    ]
+
+
+def stress_rows(folder: Path) -> list[Row]:
+    """What is left of the rightness on the sparse log where sensors, wheels or loops are spoilt or a piece left out."""
+    path, relations = folder / "intel.log.gz", read_relations(folder / "intel.relations")
+    scans = open_recording(path).scans
+
+    def mean_error(estimate: Estimate) -> float:
+        return Spread.of(relation_errors(track_of(path, scans, estimate.poses), relations)[0]).mean
+
+    found = [
+        row(f"intel, {name}: mean translation error", mean_error(mapped(spoilt(scans, spoil))[1]), "m", {}, "")
+        | {"target": most}
+        for name, spoil, most in STRESSES
+    ]
+    lied = mean_error(with_false_loops(scans))
+    note = f"{FALSE_SHARE:.0%} of all loops are made up"
+    found.append(row("intel, false loops: mean translation error", lied, "m", {}, note) | {"target": 0.0225})
+    for name, settings in ABLATIONS:
+        error = mean_error(mapped(scans, settings)[1])
+        found.append(row(f"intel, without {name}: mean translation error", error, "m", {}, "what the piece is worth"))
+    return found
 
 
 def camera_rows(folder: Path) -> list[Row]:
@@ -163,13 +201,24 @@ def gaps_to(seen: Faces, earlier: Faces) -> Floats:
     return np.asarray(np.abs(np.sum(offsets * earlier.normals[partners[found]], axis=1)))
 
 
-def mapped(scans: Sequence[Scan]) -> tuple[Mapper, Estimate]:
+def mapped(scans: Sequence[Scan], poses: MapperSettings | None = None) -> tuple[Mapper, Estimate]:
     """The mapper after all scans, and its estimate."""
     settings = Settings()
-    mapper = Mapper(settings.frontend, settings.poses)
+    mapper = Mapper(settings.frontend, poses or settings.poses)
     for scan in scans:
         mapper.add(scan)
     return mapper, mapper.result()
+
+
+def mapped_in_thirds(scans: Sequence[Scan]) -> tuple[Mapper, Estimate, Floats]:
+    """The same, and the CPU seconds (3,) that each third of the scans took as they came."""
+    settings, clocks = Settings(), [process_time()]
+    mapper = Mapper(settings.frontend, settings.poses)
+    for third in range(3):
+        for scan in scans[third * len(scans) // 3 : (third + 1) * len(scans) // 3]:
+            mapper.add(scan)
+        clocks.append(process_time())
+    return mapper, mapper.result(), np.diff(clocks)
 
 
 def track_of(path: Path, scans: Sequence[Scan], poses: Floats) -> Track:
