@@ -8,8 +8,6 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-WARM_UP = 120  # scans: enough to compile every loop and to load what closes loops
-
 PROGRAM = """
 import json, resource, sys
 from pathlib import Path
@@ -33,10 +31,10 @@ print(json.dumps({"imported": imported, "seconds": seconds, "megabytes": megabyt
 """
 
 
-def start_costs(log: Path) -> tuple[float, float]:
-    """CPU seconds of the imports, and of compiling every loop where nothing was compiled before."""
+def start_costs(log: Path, scans: int) -> tuple[float, float]:
+    """CPU seconds of the imports, and of compiling every loop that so many scans need."""
     with tempfile.TemporaryDirectory() as empty:
-        told = _run(log, WARM_UP, 2, {"NUMBA_CACHE_DIR": empty})
+        told = _run(log, scans, 2, {"NUMBA_CACHE_DIR": empty})
     return told["imported"], told["seconds"][0] - told["seconds"][1]
 
 

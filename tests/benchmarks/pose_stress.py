@@ -1,96 +1,162 @@
-"""The Intel building with worse sensors, worse wheels and lies: how much of the poses' rightness is left.
+"""Poses under stress: the Intel building with wheels that lie, beams that fail, and loops that never were.
 
-The settings are those of every other log.
+The recordings lie in the folder that ROOMSKETCH_DATA names. All with the same settings as the undisturbed drive.
 """
 
+import os
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from pathlib import Path
+from time import process_time
+from unittest.mock import patch
 
 import numpy as np
 
 from backend.estimate import Estimate
-from frontend.scan import Floats, Scan
-from slam.mapper import Mapper, MapperSettings
+from frontend.local_map import Faces
+from frontend.registration import Alignment
+from frontend.rigid_motion import between, compose
+from frontend.scan import Floats, Integers, Scan
+from slam.loops import VerificationSettings, close_loop
+from slam.mapper import Mapper
+from slam.perception import Percept
+from slam.recordings import open_recording
 from slam.settings import Settings
+from slam.trajectory_scores import Spread, read_relations, relation_errors
+from tests.benchmarks.poses import WARM_UP, BenchmarkError, Row, mapped, track_of
+from tests.benchmarks.poses import row as figure
 
-FALSE_SHARE = 0.2  # of all loops
-
-Spoil = Callable[[Scan, np.random.Generator], Scan]
-
-
-def every_other_beam(scan: Scan, _: np.random.Generator) -> Scan:
-    """Half of the beams, twice as far apart."""
-    return replace(scan, bearings=scan.bearings[::2], ranges=scan.ranges[::2])
-
-
-def five_metres(scan: Scan, _: np.random.Generator) -> Scan:
-    """A sensor that sees nothing beyond 5 m."""
-    return replace(
-        scan, ranges=np.where(scan.ranges > 5.0, np.inf, scan.ranges), sensor=replace(scan.sensor, max_range=5.0)
-    )
+STANDS = 0.025  # metres that a stressed drive may be off on average
+LONGEST = 120.0  # CPU seconds of one drive
+FALSE = 0.2  # false loops for each true one
+UNCHANGED = 0.0005  # metres: half a millimetre counts as unchanged
+SEED = 1
 
 
-def three_centimetres(scan: Scan, rng: np.random.Generator) -> Scan:
-    """A sensor whose ranges scatter by 3 cm more, and that says so."""
-    scattered = scan.ranges + rng.normal(0, 0.03, scan.ranges.size)
-    noise = float(np.hypot(scan.sensor.range_noise, 0.03))
-    return replace(scan, ranges=scattered, sensor=replace(scan.sensor, range_noise=noise))
+def rows() -> list[Row]:
+    """One row per figure. Raises BenchmarkError without the folder of real recordings."""
+    named = os.environ.get("ROOMSKETCH_DATA")
+    if named is None:
+        raise BenchmarkError("ROOMSKETCH_DATA names no folder of real recordings")
+    path = Path(named) / "intel" / "intel.log.gz"
+    scans = open_recording(path).scans
+    mapped(scans[:WARM_UP])
+    undisturbed = Run(path, scans)
+    return [*wheel_rows(undisturbed), *beam_rows(undisturbed), loop_row(undisturbed)]
 
 
-def a_tenth_too_far(scan: Scan, _: np.random.Generator) -> Scan:
-    """Wheels that claim a tenth more way than there was."""
-    return replace(scan, odometry=scan.odometry * [1.1, 1.1, 1.0])
+@dataclass(eq=False)
+class Run:
+    """A drive through the mapper until it ends or has taken LONGEST."""
+
+    path: Path
+    scans: Sequence[Scan]
+    estimate: Estimate = field(init=False)
+    seconds: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        settings, clock = Settings(), process_time()
+        mapper, placed = Mapper(settings.frontend, settings.poses), 0
+        while placed < len(self.scans) and process_time() - clock < LONGEST:
+            mapper.add(self.scans[placed])
+            placed += 1
+        self.estimate = mapper.result()
+        self.seconds = process_time() - clock
+
+    @property
+    def error(self) -> float:
+        """Mean translation error over the relations in metres; infinite for a drive that took too long."""
+        if len(self.estimate.poses) < len(self.scans):
+            return float("inf")
+        return error_of(self, self.estimate.poses)
+
+    @property
+    def said(self) -> str:
+        """How far it came, and what it left out."""
+        placed, left = len(self.estimate.poses), int((~self.estimate.mapped).sum())
+        return f"{placed} of {len(self.scans)} scans in {self.seconds:.1f} s CPU, {left} of them not in the map"
 
 
-# What is spoilt, how, and the mean translation error in metres that may be left.
-STRESSES: tuple[tuple[str, Spoil, float], ...] = (
-    ("90 of 180 beams", every_other_beam, 0.025),
-    ("range cut to 5 m", five_metres, 0.025),
-    ("3 cm range noise", three_centimetres, 0.024),
-    ("odometry a tenth too long", a_tenth_too_far, 0.025),
-)
+def error_of(run: Run, poses: Floats) -> float:
+    """Mean translation error over the relations of other poses (n, 3) for a run's scans."""
+    relations = read_relations(run.path.with_suffix("").with_suffix(".relations"))
+    return Spread.of(relation_errors(track_of(run.path, run.scans, poses), relations)[0]).mean
 
 
-def spoilt(scans: Sequence[Scan], spoil: Spoil) -> list[Scan]:
-    """All scans, each spoilt, with one seed."""
-    rng = np.random.default_rng(0)
-    return [spoil(scan, rng) for scan in scans]
+def wheel_rows(undisturbed: Run) -> list[Row]:
+    """Wheels a tenth larger than they are said to be, smaller ones, and wheels that count nothing."""
+    moves = [between(old.odometry, new.odometry) for old, new in pairwise(undisturbed.scans)]
+    found = []
+    for name, scale in (("odometry scaled by 1.1", 1.1), ("odometry scaled by 0.9", 0.9), ("frozen wheels", 0.0)):
+        claimed = [undisturbed.scans[0].odometry]
+        for move in moves:
+            claimed.append(compose(claimed[-1], scale * move))
+        scans = [replace(scan, odometry=pose) for scan, pose in zip(undisturbed.scans, claimed, strict=True)]
+        found.append(stressed(name, Run(undisturbed.path, scans), undisturbed))
+    return found
 
 
-def with_false_loops(scans: Sequence[Scan]) -> Estimate:
-    """The estimate where a share of all loops ties the newest keyframe to some other one, at a pose that is made up."""
-    settings, rng = Settings(), np.random.default_rng(0)
-    mapper = _Lied(settings, rng)
-    for scan in scans:
-        mapper.add(scan)
-    return mapper.result()
+def beam_rows(undisturbed: Run) -> list[Row]:
+    """A quarter of the beams without a reading: other ones in every scan, or always those to the right."""
+    rng, count = np.random.default_rng(SEED), len(undisturbed.scans[0].ranges)
+    lost: dict[str, Callable[[], Integers]] = {
+        "a quarter of the beams missing, at random": lambda: rng.permutation(count)[: count // 4],
+        "a quarter of the beams missing, on the right": lambda: np.arange(count // 4),
+    }
+    return [
+        stressed(name, Run(undisturbed.path, [without(scan, choose()) for scan in undisturbed.scans]), undisturbed)
+        for name, choose in lost.items()
+    ]
 
 
-class _Lied(Mapper):
-    """A mapper that is told false loops besides those it finds."""
-
-    def __init__(self, settings: Settings, rng: np.random.Generator) -> None:
-        super().__init__(settings.frontend, settings.poses)
-        believe = self._graph.add_loop
-
-        def add_loop(fixed: int, moving: int, pose: Floats, covariance: Floats) -> None:
-            believe(fixed, moving, pose, covariance)
-            if rng.random() < FALSE_SHARE / (1 - FALSE_SHARE):
-                false = np.array([*rng.uniform(-3, 3, 2), rng.uniform(-np.pi, np.pi)])
-                believe(int(rng.integers(moving)), moving, false, covariance)
-
-        self._graph.add_loop = add_loop  # type: ignore[method-assign]
+def without(scan: Scan, lost: Integers) -> Scan:
+    """The scan whose readings at these places are unusable."""
+    ranges = scan.ranges.copy()
+    ranges[lost] = np.nan
+    return replace(scan, ranges=ranges)
 
 
-# What is left out of the estimation, and how.
-POSES = Settings().poses
-ABLATIONS: tuple[tuple[str, MapperSettings], ...] = (
-    (
-        "the wheels' calibration",
-        replace(POSES, odometry=replace(POSES.odometry, scale_doubt=0.0, bias_doubt=0.0, mount_doubt=0.0)),
-    ),
-    ("knots as landmarks", replace(POSES, landmarks=replace(POSES.landmarks, proven=10**9))),
-    ("the wider search", replace(POSES, tracking=replace(POSES.tracking, good=0.0, poor=0.0))),
-    ("loops", replace(POSES, loops=replace(POSES.loops, skipped=10**9))),
-    ("the last step over all faces", replace(POSES, refinement=replace(POSES.refinement, cells=()))),
-)
+def loop_row(undisturbed: Run) -> Row:
+    """For every five loops that are found, one that was refused is believed, and somewhere else than it was tried."""
+    liar = Liar(np.random.default_rng(SEED))
+    with patch("slam.mapper.close_loop", liar):
+        deceived = Run(undisturbed.path, undisturbed.scans)
+    told = stressed(f"{FALSE * 100:.0f} % false loops let in", deceived, undisturbed)
+    note = f"{told['note']}; {liar.false} false loops beside {liar.true} true ones, mended on the way"
+    return told | {"target": undisturbed.error + UNCHANGED, "note": note}
+
+
+class Liar:
+    """Closes loops as usual, but lets a share of the refused ones in, off by up to the window that was searched."""
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        self.rng, self.true, self.false = rng, 0, 0
+        self.last: Alignment | None = None
+
+    def __call__(
+        self,
+        percept: Percept,
+        pose: Floats,
+        recent: Faces,
+        old: Faces,
+        window: tuple[float, float],
+        settings: VerificationSettings,
+    ) -> Alignment | str:
+        """The true answer, or a lie with the confidence of the last true one."""
+        answer = close_loop(percept, pose, recent, old, window, settings)
+        if not isinstance(answer, str):
+            self.true, self.last = self.true + 1, answer
+            return answer
+        if self.last is None or self.false >= FALSE * self.true:
+            return answer
+        self.false += 1
+        reach = np.maximum(window, (1.0, 0.2))
+        return replace(self.last, pose_in_fixed=pose + self.rng.uniform(-1, 1, 3) * reach[[0, 0, 1]])
+
+
+def stressed(name: str, run: Run, undisturbed: Run) -> Row:
+    """The error of a run beside that of the undisturbed one."""
+    peers = {"undisturbed": undisturbed.error}
+    told = figure(f"intel, {name}: mean translation error", run.error, "m", peers, run.said)
+    return told | {"part": "pose_stress", "target": STANDS}
