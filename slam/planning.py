@@ -51,7 +51,7 @@ def tour(safety: MultiPolygon, start: Floats, settings: PlanningSettings) -> dic
     around = [part for part in standable if shapely.contains_xy(part, *start[:2])]
     if not around:
         raise PlanningError(
-            f"a robot {settings.tour_robot} cannot stand at the first pose ({start[0]:g}, {start[1]:g})"
+            f"a robot {settings.tour_robot} cannot stand at the first pose ({start[0]:.2f}, {start[1]:.2f})"
         )
     goal = _far_end(around[0], settings.tour_room * robot.reach, start)
     begin, end, world = np.array([*start[:2], np.nan]), np.array([*goal, np.nan]), World.from_free_space(safety)

@@ -27,7 +27,9 @@ from slam.whole_output import check_place, whole_folder
 def merge(
     recordings: Annotated[
         list[Path],
-        typer.Argument(help="Recording folders, CARMEN logs or CSVs of ranges; several drives become one map."),
+        typer.Argument(
+            help="Recording folders, CARMEN logs, ROS bags or CSVs of ranges; several drives become one map."
+        ),
     ],
     to: Annotated[Path, typer.Option("--out", help="Folder for map, trajectory, report and figures.")],
     settings: Annotated[Path | None, typer.Option(help="TOML file with what differs from the defaults.")] = None,
