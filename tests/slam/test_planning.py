@@ -27,7 +27,7 @@ def test_the_tour_goes_to_the_far_end_of_the_map() -> None:
 def test_a_map_nobody_can_drive_on_says_so() -> None:
     answers, reason = tour_or_reason(ROOM, np.array([0.1, 0.1, 0.0]), PlanningSettings())
     assert answers == {}
-    assert reason == "a robot disc:0.15 cannot stand at the first pose (0.1, 0.1)"
+    assert reason == "a robot disc:0.15 cannot stand at the first pose (0.10, 0.10)"
 
 
 def test_a_pose_without_heading_leaves_it_open() -> None:
