@@ -47,8 +47,8 @@ class MapperSettings:
     keyframe_radians: float = 0.3  # larger keeps fewer keyframes
     mend_metres: float = 0.05  # disagreement of a loop that mends the graph at once; larger mends less often
     mend_radians: float = 0.01
-    loop_metres: float = 0.5  # way between two searches for loops; larger searches less often
-    loop_radians: float = 0.5  # turn between two searches for loops; larger searches less often
+    loop_metres: float = 1.0  # way between two searches for loops; larger searches less often
+    loop_radians: float = 1.0  # turn between two searches for loops; larger searches less often
     patience: int = 3  # scans in a row that fit nowhere before the robot is lost; larger waits for people to pass
 
 
@@ -70,6 +70,7 @@ class Mapper:
         self._arcs = ArcTracking(settings.arcs)
         self._drift = Drift()
         self._keyframes: list[Keyframe] = []
+        self._settled = np.empty((0, 3))  # poses of the keyframes that were there when the graph was last solved
         self._relative: list[tuple[int, Floats]] = []  # keyframe and pose in its frame, one per scan
         self._decisions: list[Decision] = []
         self._slips: set[int] = set()  # scans on the way to which the wheels disagreed
@@ -152,6 +153,7 @@ class Mapper:
     def _settle(self) -> None:
         """Move keyframes and landmarks to where the graph now puts them."""
         poses = self._graph.poses
+        self._settled = poses
         for keyframe, pose in zip(self._keyframes, poses, strict=True):
             keyframe.pose = pose
         self._landmarks.settle(poses, np.array(self._graph.landmark_indices, np.int64), self._graph.landmarks)
@@ -379,7 +381,8 @@ class Mapper:
         self._vain = self._pause = 0
 
     def _tried_loops(self) -> tuple[Tried, ...]:
-        poses = np.concatenate([keyframe.pose for keyframe in self._keyframes]).reshape(-1, 3)
+        fresh = [keyframe.pose for keyframe in self._keyframes[len(self._settled) :]]
+        poses = np.vstack([self._settled, *fresh])
         found = candidates(poses, self._drift, self.settings.loops)
         return tuple(Tried(candidate.pose, self._verify(candidate)) for candidate in found)
 
