@@ -112,6 +112,8 @@ class FactorGraph:
                 f"a sighting names landmark {landmark}, but the graph holds {len(self.landmark_indices)} landmarks"
             )
         distance = float(np.hypot(*position))
+        if distance == 0:
+            raise GraphError(f"landmark {landmark} is seen where pose {pose} stands itself: that has no bearing")
         along = position / distance
         turned = np.array([[-along[1], along[0]], along]) / np.array([[distance], [1.0]])
         huber = gtsam.noiseModel.mEstimator.Huber.Create(self.settings.landmark_width)
@@ -205,6 +207,8 @@ class FactorGraph:
 
     def covariances(self) -> Floats:
         """(n, 3, 3) marginal covariances of the poses in their own axes."""
+        if self._poses and not self._anchors:
+            raise GraphError(f"{len(self._poses)} poses, but no anchor: nothing says where they are")
         marginals = gtsam.Marginals(self._graph, self._values)
         return np.array([marginals.marginalCovariance(X(i)) for i in self._poses]).reshape(-1, 3, 3)
 

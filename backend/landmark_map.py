@@ -69,6 +69,7 @@ class LandmarkMap:
     def see(self, pose_index: int, pose: Floats, knots: Knots) -> list[Sighting]:
         """Match the knots seen at `pose` (3,); the sightings that are worth a factor now (old ones once proven)."""
         worth: list[Sighting] = []
+        knots = _with_bearing(knots)
         placed, headings = _placed(knots.positions, pose), knots.headings + pose[2]
         for k, landmark in enumerate(self._match(placed, knots, headings, pose[2])):
             index = int(landmark) if landmark >= 0 else len(self._sightings)
@@ -123,6 +124,13 @@ class LandmarkMap:
         row = (*position, turn, heading + pose[2], *seen.position, heading, seen.pose)
         self._rows[len(self._sightings)] = row
         self._sightings.append([])
+
+
+def _with_bearing(knots: Knots) -> Knots:
+    """Those that are farther away than they are unsure: what may be anywhere around the robot has no bearing."""
+    unsure = np.sqrt(np.trace(knots.covariances, axis1=1, axis2=2))
+    far = np.hypot(*knots.positions.T) > unsure
+    return Knots(knots.positions[far], knots.turns[far], knots.headings[far], knots.covariances[far])
 
 
 def _placed(points: Floats, pose: Floats) -> Floats:

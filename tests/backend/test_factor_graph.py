@@ -260,3 +260,17 @@ def test_a_carried_part_keeps_its_shape_and_then_hangs_on_what_ties_it() -> None
     graph.mend()
     graph.solve()
     assert worst(graph, true) < 1e-3
+
+
+def test_a_landmark_at_the_robots_own_place_is_refused() -> None:
+    graph = chained(twice_round(3))
+    graph.add_landmark(0, np.zeros(2))
+    with pytest.raises(GraphError, match="landmark 0 is seen where pose 1 stands"):
+        graph.add_sighting(1, 0, np.zeros(2), np.eye(2))
+
+
+def test_without_an_anchor_nothing_is_known_of_where_poses_are() -> None:
+    graph = FactorGraph(GraphSettings())
+    graph.add_pose(0, np.zeros(3))
+    with pytest.raises(GraphError, match="1 poses, but no anchor"):
+        graph.covariances()

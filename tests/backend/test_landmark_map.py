@@ -129,3 +129,10 @@ def test_a_scan_without_knots_changes_nothing() -> None:
     landmarks.see(1, np.zeros(3), knot(1.0, 2.0))
     assert landmarks.see(2, np.zeros(3), none) == []
     np.testing.assert_array_equal(landmarks.counts, [1])
+
+
+def test_a_knot_that_may_be_anywhere_around_the_robot_is_no_landmark() -> None:
+    landmarks = LandmarkMap(SETTINGS)
+    landmarks.see(0, np.zeros(3), knot(0.01, 0.01))
+    landmarks.see(0, np.zeros(3), knot(0.0, 0.0))
+    assert len(landmarks.positions) == 0
