@@ -143,8 +143,9 @@ def _solve(own: csr_array, through: csr_array, gradient: Floats) -> Floats:
 def _conjugate_gradients(
     apply: Callable[[Floats], Floats], nearly: Callable[[Floats], Floats], right: Floats
 ) -> Floats:
-    """The solution (n,) of apply(x) = right, preconditioned by `nearly`; as many steps as unknowns at most.
+    """The solution (n,) of apply(x) = right, preconditioned by `nearly`; RefinementError if it does not settle.
 
+    Exact numbers would settle in as many steps as there are unknowns; rounded ones take a few more.
     Sums instead of dot products: those of a threaded BLAS differ from run to run, and its threads cost more than they
     give at this size.
     """
@@ -152,7 +153,8 @@ def _conjugate_gradients(
     nearest = nearly(rest)
     along, product = nearest, float(np.sum(rest * nearest))
     enough = SETTLED**2 * float(np.sum(right * right))
-    for _ in range(len(right)):
+    most = 10 * len(right)
+    for _ in range(most + 1):
         if float(np.sum(rest * rest)) <= enough:
             return found
         pulled = apply(along)
@@ -161,7 +163,7 @@ def _conjugate_gradients(
         nearest = nearly(rest)
         product, before = float(np.sum(rest * nearest)), product
         along = nearest + product / before * along
-    raise RefinementError(f"the joint refinement of {len(right) // 3 + 1} poses did not settle in {len(right)} steps")
+    raise RefinementError(f"the joint refinement of {len(right) // 3 + 1} poses did not settle in {most} steps")
 
 
 @dataclass(frozen=True, eq=False)

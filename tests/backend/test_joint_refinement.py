@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from backend.joint_refinement import Chain, Floats, RefinementSettings, Sheaf, refine
+from backend.joint_refinement import Chain, Floats, RefinementSettings, Sheaf, _conjugate_gradients, refine
 
 ROOM = ((0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0))
 SETTINGS = RefinementSettings()
@@ -104,3 +104,10 @@ def test_faces_that_no_line_holds_leave_the_wheels_alone() -> None:
     scattered = rng.uniform(0, 9, (40, 2))  # nowhere enough of them in one place to be a wall
     sheaf = seen(true, scattered, np.tile([1.0, 0.0], (40, 1)), 0.01, rng)
     assert refine(true, sheaf, wheels(true, np.full(3, 0.02)), SETTINGS) == pytest.approx(true)
+
+
+def test_rounded_numbers_take_a_few_more_steps_than_there_are_unknowns() -> None:
+    hilbert = 1.0 / (1.0 + np.add.outer(np.arange(9.0), np.arange(9.0))) + 1e-9 * np.eye(9)
+    right = np.ones(9)
+    found = _conjugate_gradients(lambda v: np.asarray(hilbert @ v), lambda v: v, right)
+    np.testing.assert_allclose(hilbert @ found, right, atol=1e-3)
