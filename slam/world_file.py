@@ -9,7 +9,6 @@ from shapely import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from backend.room_map import MapEdgeKind
-from backend.thin_rectangles import ThinRectangles
 from frontend.scan import Floats
 from planners.world import World
 from slam.room_file import EDGE_KINDS, Properties, RoomFileError, read_features
@@ -70,12 +69,3 @@ def _enclosed(rectangles: list[BaseGeometry]) -> MultiPolygon:
 
 def _polygons(geometry: BaseGeometry) -> MultiPolygon:
     return MultiPolygon([part for part in shapely.get_parts(geometry) if isinstance(part, Polygon)])
-
-
-def rectangle_features(rectangles: ThinRectangles) -> list[Feature]:
-    """Thin rectangles in metres, each with the number of its chain."""
-    return [
-        (Polygon(corners * rectangles.unit + rectangles.origin), {"kind": RECTANGLE, "chain": number})
-        for number, chain in enumerate(rectangles.chains)
-        for corners in chain
-    ]

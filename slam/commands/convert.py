@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from slam.commands.console import err, out
-from slam.exports.formats import EXPORTS, export
+from slam.exports.formats import export, export_named
 from slam.exports.product import ExportError, load_product
 from slam.recording_files import FACTS, readings_csv, readings_name, recording_toml, write_recording
 from slam.recordings import open_recording
@@ -18,7 +18,8 @@ def convert(
     to: Annotated[
         Path,
         typer.Argument(
-            help="FILE.geojson, .svg, .dxf, .pgm, .gpkg, .glb, .ply, .tum or .g2o; a folder for a recording."
+            help="FILE.geojson, .rectangles.geojson, .svg, .dxf, .pgm, .gpkg, .glb, .ply, .tum or .g2o; "
+            "a folder for a recording."
         ),
     ],
     format_name: Annotated[str | None, typer.Option("--format", help="The recording's format, if not guessed.")] = None,
@@ -28,7 +29,7 @@ def convert(
         out.print(f"{', '.join(map(str, export(load_product(source), to)))}")
         return
     recording = open_recording(source, format_name)
-    if to.suffix.removeprefix(".").lower() in EXPORTS:
+    if export_named(to):
         remedy = f"first `roomsketch merge {source} --out run`, then `roomsketch convert run {to}`"
         raise ExportError(f"{to.name}: {source} is a recording, and has no map to export yet; {remedy}")
     about = {"name": recording.name, "description": f"converted from {source.name}"}

@@ -11,6 +11,7 @@ from slam.exports.geopackage import write_geopackage
 from slam.exports.mesh import write_mesh
 from slam.exports.occupancy_grid import write_grid
 from slam.exports.product import ExportError, Product
+from slam.exports.rectangles import write_rectangles
 from slam.room_file import room_text
 from slam.trajectory_file import tum_text
 from slam.whole_output import OutputError
@@ -25,12 +26,18 @@ class Export:
     write: Callable[[Product, Path], None]
 
 
+def export_named(to: Path) -> Export | None:
+    """The format whose ending the name has, the longest where several do."""
+    fitting = [one for one in EXPORTS.values() if to.name.lower().endswith(one.suffix)]
+    return max(fitting, key=lambda one: len(one.suffix), default=None)
+
+
 def export(product: Product, to: Path) -> list[Path]:
     """Write the product in the format that the name `to` ends in; the files made, whole or not at all.
 
     Raises ExportError for an unknown ending or what the product lacks, OutputError where nothing can be written.
     """
-    known = EXPORTS.get(to.suffix.removeprefix(".").lower())
+    known = export_named(to)
     if known is None:
         endings = ", ".join(one.suffix for one in EXPORTS.values())
         raise ExportError(
@@ -64,6 +71,7 @@ def _write_graph(product: Product, path: Path) -> None:
 
 EXPORTS = {
     "geojson": Export(".geojson", "the map with the provenance of every edge", _write_geojson),
+    "rectangles": Export(".rectangles.geojson", "the boundary as the paper's thin rectangles", write_rectangles),
     "svg": Export(".svg", "a drawing for browsers and illustration programs", write_svg),
     "dxf": Export(".dxf", "a drawing in metres for CAD programs", write_dxf),
     "pgm": Export(".pgm", "an occupancy grid with its .yaml for map servers", write_grid),

@@ -11,7 +11,7 @@ from shapely.geometry import mapping
 from shapely.geometry.base import BaseGeometry
 
 from backend.thin_rectangles import thin_rectangles
-from slam.world_file import rectangle_features
+from slam.exports.rectangles import rectangles_text
 from tests.stories.command_line import Told, run
 
 TWO_ROOMS = Polygon(
@@ -75,8 +75,8 @@ def test_a_map_offers_its_safety_layer_and_its_best_estimate(tmp_path: Path, pla
 
 @pytest.mark.parametrize("planner", ["cones", "configuration-space"])
 def test_thin_rectangles_are_walls(tmp_path: Path, planner: str) -> None:
-    rectangles = rectangle_features(thin_rectangles(MultiPolygon([TWO_ROOMS])))
-    room = write(tmp_path / "rectangles.geojson", *rectangles)
+    room = tmp_path / "rectangles.geojson"
+    room.write_text(rectangles_text(thin_rectangles(MultiPolygon([TWO_ROOMS]))))
     told = plan(room, "1,1,0", "9,5", *ROBOT, "--planner", planner, "--json")
     assert told.code == 0
     assert json.loads(told.out)["layer"] == "rectangle"

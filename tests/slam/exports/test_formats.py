@@ -1,3 +1,4 @@
+import json
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from slam.pose_graph_file import g2o_text
 from slam.room_file import read_room
 from slam.trajectory_file import Trajectory
 from slam.whole_output import OutputError
+from slam.world_file import read_world
 
 VIEWS = np.array([0, 1])
 PILLAR = box(1.5, 1.0, 2.0, 1.4)
@@ -169,3 +171,10 @@ def test_what_cannot_be_exported_is_said(product: Product, tmp_path: Path) -> No
     (tmp_path / "file").write_text("")
     with pytest.raises(OutputError, match="cannot be written"):
         export(product, tmp_path / "file" / "map.svg")
+
+
+def test_thin_rectangles_enclose_the_free_space_but_for_half_their_width(product: Product, tmp_path: Path) -> None:
+    (path,) = export(product, tmp_path / "room.rectangles.geojson")
+    unit = json.loads(path.read_text())["unit"]
+    world = read_world(path, "safety").world
+    assert shapely.hausdorff_distance(world.free.boundary, product.room.free.boundary) < unit
