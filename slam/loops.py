@@ -11,6 +11,7 @@ from frontend.rigid_motion import inverse
 from frontend.scan import Floats
 from frontend.visibility import VisibilitySettings, look
 from slam.perception import Percept
+from slam.tracking import turned
 
 
 @dataclass(frozen=True)
@@ -97,3 +98,10 @@ def _refusal(percept: Percept, found: Alignment, faces: Faces, settings: Verific
     if found.firmness < settings.firmness:
         return f"free to slide along one direction (firmness {found.firmness:.2f}, limit {settings.firmness:.2f})"
     return None
+
+
+def loop_covariance(found: Alignment) -> Floats:
+    """(3, 3) of a pose on an old submap, in its own axes."""
+    own: Floats = np.asarray(np.linalg.inv(found.information + 1e-9 * np.eye(3)), np.float64)
+    # The submap itself is only as good as its own poses: nothing is known better than half a centimetre.
+    return np.asarray(turned(own, -found.pose_in_fixed[2]) + np.diag([0.005, 0.005, 0.002]) ** 2)

@@ -26,13 +26,13 @@ def left_out(roots: Integers, main: int) -> list[Decision]:
     ]
 
 
-def landmarks_in(graph: FactorGraph, inside: Booleans) -> tuple[Floats, Booleans, tuple[LandmarkTie, ...]]:
-    """Landmarks (m, 2) seen from the poses inside (k,), which of all they are (l,), and their ties by new places."""
+def landmarks_in(graph: FactorGraph, inside: Booleans) -> tuple[Floats, tuple[LandmarkTie, ...]]:
+    """Landmarks (m, 2) seen from the poses inside (k,), and their ties by the places they have here."""
     kept = np.ones(len(graph.landmarks), np.bool_)
     for tie in graph.landmark_ties:
         kept[tie.landmark] &= inside[tie.pose]
     places = np.cumsum(kept) - 1
-    return graph.landmarks[kept], kept, _renumbered(graph.landmark_ties, kept, places)
+    return graph.landmarks[kept], _renumbered(graph.landmark_ties, kept, places)
 
 
 def _renumbered(ties: Sequence[LandmarkTie], kept: Booleans, places: Integers) -> tuple[LandmarkTie, ...]:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 
 from backend.polygon_merging import MergeSettings
 from frontend.door_edges import DoorEdgeSettings
-from slam.mapper import MapperSettings
+from slam.mapper_settings import MapperSettings
 from slam.perception import FrontendSettings
 from slam.planning import PlanningSettings
 from slam.readers.recording import OdometryNoise

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from frontend.scan import Scan
-from slam.mapper import MapperSettings
+from slam.mapper_settings import MapperSettings
 from slam.settings import Settings
 
 Spoil = Callable[[Scan, np.random.Generator], Scan]

@@ -19,7 +19,8 @@ from backend.estimate import Estimate
 from frontend.local_map import Faces
 from frontend.rigid_motion import transform
 from frontend.scan import Floats, Scan
-from slam.mapper import Mapper, MapperSettings
+from slam.mapper import Mapper
+from slam.mapper_settings import MapperSettings
 from slam.recordings import open_recording
 from slam.settings import Settings
 from slam.trajectory_scores import (

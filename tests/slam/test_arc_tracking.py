@@ -3,7 +3,8 @@
 import numpy as np
 
 from frontend.scan import Floats
-from slam.mapper import Mapper, MapperSettings
+from slam.mapper import Mapper
+from slam.mapper_settings import MapperSettings
 from slam.perception import FrontendSettings
 from slam.simulation.random_plans import random_plan
 from slam.simulation.record import Recipe, drive_through
