@@ -25,16 +25,19 @@ class AssociationSettings:
     gate: float = 9.2  # squared Mahalanobis distance (χ², 2 degrees of freedom, 1 %); larger matches farther off
     rival: float = 3.0  # by which the second best must be worse, in the same measure; larger refuses more doubtful ones
     apart: float = 0.3  # metres a wall may go on beyond what was seen of it; larger joins walls across gaps
+    facing: float = np.radians(60.0)  # between rays that meet one edge; larger pools both corners of a wall's end
     coarse: float = 0.8  # radians and metres beyond which nothing is compared; larger only costs time
 
 
 class Known(NamedTuple):
-    """A landmark in the belief: whether a wall, where its values start in it, and what is known of a wall's extent."""
+    """A landmark in the belief: whether a wall, where its values start in it, what is known of a wall's extent, and the
+    heading of the ray that first met an edge."""
 
     wall: bool
     slot: int
     start: float
     stop: float
+    ray: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +126,8 @@ def _compared(
     else:
         seen, slope = seen_edge(pose, there)
         measured, variances = arcs.as_edge(arc)
+        if abs(wrapped(pose[2] + seen[1] - one.ray)) > settings.facing:
+            return None
     innovation = np.array([measured[0] - seen[0], wrapped(measured[1] - seen[1])])
     if np.abs(innovation).max() > settings.coarse:
         return None

@@ -25,6 +25,7 @@ class BirthSettings:
     margin: float = 4.0  # by which the best of the other kind must be worse; larger waits for more views
     nearest: float = 0.15  # metres between two places that propose; smaller proposes from almost the same place
     farthest: float = 4.0
+    facing: float = np.radians(60.0)  # between rays that meet one edge; larger pools both corners of a wall's end
     gap: float = 0.5  # metres of a wall that nobody saw between two parts; larger joins walls across gaps
     drift: tuple[float, float] = (0.008, 0.006)  # metres of doubt between places, and per scan between them
     swing: float = 0.015  # radians of doubt between them
@@ -157,7 +158,10 @@ def _votes(
     else:
         rays = values - loose.places
         gaps = np.hypot(rays[:, 0], rays[:, 1]) - loose.ranges
-        turns, spreads = _wrapped(np.arctan2(rays[:, 1], rays[:, 0]) - loose.edges), loose.edge_spreads
+        headings = np.arctan2(rays[:, 1], rays[:, 0])
+        turns, spreads = _wrapped(headings - loose.edges), loose.edge_spreads
+        # A wall's end has two corners: what is met from the other side is not the same.
+        free = free & (np.abs(_wrapped(headings - headings[-1])) < settings.facing)
     squares = (gaps / np.hypot(loose.spread, doubts.metres)) ** 2 + (turns / np.hypot(spreads, doubts.radians)) ** 2
     agreeing = np.flatnonzero((squares < settings.gate) & free)
     order = agreeing[np.lexsort((squares[agreeing], loose.owner[agreeing]))]

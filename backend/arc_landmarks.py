@@ -3,7 +3,7 @@
 A new scan is placed by the landmarks it sees again; arcs that nothing explains wait until others agree with them.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,13 +33,14 @@ class ArcLandmarkSettings:
 @dataclass(frozen=True)
 class _Landmark:
     """index: among the graph's walls or landmarks. seen: the newest pose that did. start, stop: of a wall, as far as it
-    was seen, leftward of its origin."""
+    was seen, leftward of its origin. ray: heading of the ray that first met an edge."""
 
     wall: bool
     index: int
     seen: int = 0
     start: float = 0.0
     stop: float = 0.0
+    ray: float = 0.0
 
 
 class ArcLandmarks:
@@ -117,7 +118,7 @@ class ArcLandmarks:
     def _known(self, landmark: int, walls: list[int], edges: list[int]) -> Known:
         one = self._landmarks[landmark]
         slot = 3 + 3 * walls.index(one.index) if one.wall else 3 + 3 * len(walls) + 2 * edges.index(one.index)
-        return Known(one.wall, slot, one.start, one.stop)
+        return Known(one.wall, slot, one.start, one.stop, one.ray)
 
     def _new_wall(self, graph: FactorGraph, pose: Floats, arcs: Arcs, arc: int) -> int:
         """A wall that one arc shows surely, its origin at the foot."""
@@ -129,7 +130,8 @@ class ArcLandmarks:
         if not birth.wall:
             index = len(self._counts[False])
             graph.add_landmark(index, birth.values)
-            return self._add(_Landmark(False, index))
+            ray = birth.values - loose.places[birth.members[-1]]
+            return self._add(_Landmark(False, index, ray=float(np.arctan2(ray[1], ray[0]))))
         heading, distance = birth.values
         normal, place = np.array([np.cos(heading), np.sin(heading)]), loose.places[birth.members[-1]]
         return self._add_wall(graph, np.array([*(place + normal * (distance - normal @ place)), heading]))
@@ -149,7 +151,7 @@ class ArcLandmarks:
         self._counts[one.wall][one.index] += 1
         if not one.wall:
             graph.add_sighting(pose, one.index, *arcs.sighted_edge(arc))
-            self._landmarks[landmark] = _Landmark(False, one.index, pose)
+            self._landmarks[landmark] = replace(one, seen=pose)
             return
         along = seen_wall(graph.poses[pose], graph.walls[one.index])[2]
         graph.add_wall_sighting(pose, one.index, *arcs.sighted_wall(arc, along))

@@ -5,7 +5,7 @@ import numpy as np
 from backend.arc_association import AssociationSettings, Belief, Known, associate
 from tests.backend.test_arcs import arcs_of
 
-CORNER = [Known(True, 3, -2.0, 2.0), Known(True, 6, -2.0, 2.0)]
+CORNER = [Known(True, 3, -2.0, 2.0, 0.0), Known(True, 6, -2.0, 2.0, 0.0)]
 
 
 def belief(doubt: float, *walls: tuple[float, float, float]) -> Belief:
@@ -32,6 +32,13 @@ def test_an_arc_between_two_walls_that_explain_it_alike_ties_nothing() -> None:
 
 def test_what_nothing_explains_is_loose_and_a_wall_ends_where_it_was_seen_to_end() -> None:
     before = belief(0.02, (2.0, 5.0, 0.0))
-    placed = associate(before, [Known(True, 3, -1.0, 1.0)], arcs_of((2.0, 0.0, 0.02)), AssociationSettings())
+    placed = associate(before, [Known(True, 3, -1.0, 1.0, 0.0)], arcs_of((2.0, 0.0, 0.02)), AssociationSettings())
     assert placed.loose == (0,)
     assert np.allclose(placed.pose, 0)
+
+
+def test_an_edge_is_not_met_from_its_other_side() -> None:
+    before, arcs = belief(0.05), arcs_of((1.0, 0.0, 0.05))
+    before = Belief(np.append(before.mean, [1.0, 0.0]), np.diag([*np.diag(before.covariance), 1e-4, 1e-4]))
+    for ray, pairs in ((0.5, ((0, 0),)), (2.5, ())):
+        assert associate(before, [Known(False, 3, 0.0, 0.0, ray)], arcs, AssociationSettings()).pairs == pairs

@@ -1,5 +1,7 @@
 """Walls and edges are born of arcs that agree."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from backend.arc_births import BirthSettings, Loose, births
@@ -11,8 +13,8 @@ PLACES = np.array([[0.0, 0.0], [0.8, 0.1], [1.5, -0.2], [2.2, 0.4]])
 def loose_of(ranges: Floats, headings: Floats, *, rising: bool) -> Loose:
     n = len(ranges)
     return Loose(
-        np.arange(n), PLACES[:n], ranges, 0.01, headings, np.full(n, 0.05), np.full(n, -0.6), np.full(n, 0.6),
-        headings, np.full(n, 0.05), np.full(n, rising),
+        np.arange(n), np.resize(PLACES, (n, 2)), ranges, 0.01, headings, np.full(n, 0.05),
+        np.full(n, -0.6), np.full(n, 0.6), headings, np.full(n, 0.05), np.full(n, rising),
     )  # fmt: skip
 
 
@@ -35,3 +37,14 @@ def test_circles_that_cross_in_one_place_are_an_edge() -> None:
 def test_two_views_are_too_few() -> None:
     loose = loose_of(2.0 - PLACES[:2, 1], np.full(2, np.pi / 2), rising=True)
     assert not list(births(loose, 1, 0.01, BirthSettings()))
+
+
+def test_the_two_corners_of_a_walls_end_are_not_one_edge() -> None:
+    places = np.array([[-1.2, 0.0], [-0.8, 0.0], [-0.4, 0.0], [0.5, 0.0], [0.9, 0.0], [1.3, 0.0]])
+    rays = np.where(places[:, :1] < 0, [0.0, 0.5], [0.1, 0.5]) - places
+    headings = np.arctan2(rays[:, 1], rays[:, 0])
+    seen = loose_of(np.hypot(*rays.T), headings, rising=False)
+    loose = replace(seen, owner=np.arange(6), places=places)
+    (born,) = births(loose, 5, 0.01, BirthSettings())
+    assert list(born.members) == [3, 4, 5]
+    assert np.allclose(born.values, [0.1, 0.5], atol=0.01)
