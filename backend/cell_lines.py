@@ -128,18 +128,29 @@ def _fitted(groups, points, normals, weight, scale):  # type: ignore[no-untyped-
         nx, ny = (weight[own] * normals[own, 0]).sum(), (weight[own] * normals[own, 1]).sum()
         length = max(np.sqrt(nx * nx + ny * ny), 1e-12)
         nx, ny = nx / length, ny / length
-        offset = points[own, 0] * nx + points[own, 1] * ny
-        level = _weighted_median(offset, weight[own])
-        heaped = weight[own]
-        for _ in range(3):
-            heaped = weight[own] / (1 + ((offset - level) / scale[own]) ** 2)
-            level = (heaped * offset).sum() / max(heaped.sum(), 1e-12)
-        x, y = (heaped * points[own, 0]).sum() / heaped.sum(), (heaped * points[own, 1]).sum() / heaped.sum()
+        offset, weights, scales = points[own, 0] * nx + points[own, 1] * ny, weight[own], scale[own]
+        level, trusted = _level(offset, weights, scales)
+        total = max(trusted.sum(), 1e-12)
+        x, y = (trusted * points[own, 0]).sum() / total, (trusted * points[own, 1]).sum() / total
         away = level - (x * nx + y * ny)
         centres[line, 0], centres[line, 1] = x + away * nx, y + away * ny
         facing[line, 0], facing[line, 1] = nx, ny
         residuals[own] = offset - level
     return centres, facing, residuals
+
+
+@njit(cache=True)
+def _level(offset, weight, scale):  # type: ignore[no-untyped-def]
+    """The robust mean of offsets, and the weights (n,) it was taken with last."""
+    level, trusted = _weighted_median(offset, weight), np.empty_like(weight)
+    for _ in range(3):
+        total = mean = 0.0
+        for i in range(len(offset)):
+            trusted[i] = weight[i] / (1 + ((offset[i] - level) / scale[i]) ** 2)
+            total += trusted[i]
+            mean += trusted[i] * offset[i]
+        level = mean / max(total, 1e-12)
+    return level, trusted
 
 
 @njit(cache=True)

@@ -5,6 +5,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely import MultiPolygon
 
+from backend.along_edges import Along, along_edges
 from backend.evidence import Counts
 from backend.room_map import MapEdge, MapEdgeKind
 from backend.samples import Samples
@@ -29,51 +30,56 @@ def label_edges(edges: Floats, samples: Samples, counts: Counts, reach: float) -
 
     An edge that was measured in part is cut where its measured part ends.
     """
-    if not len(edges):
-        return ()
-    edges = _cut(edges, samples, reach)
+    beside = along_edges(edges, samples, reach)
+    edges, piece = _cut(edges, beside, reach)
     inward = _inward(edges)
-    edge, sample = _supports(edges, inward, samples, reach)
-    views = _views_by_edge(edge, samples.view[sample], len(edges))
-    offset = np.sum((samples.points[sample] - edges[edge, 0]) * inward[edge], axis=1)
-    spread = _spread(edge, offset, len(edges))
+    views = _views_by_edge(piece, samples.view[beside.sample], len(edges))
+    spread = _spread(piece, beside.off, len(edges))
     through = _seen_through(edges, inward, counts, reach)
     return tuple(
         MapEdge(
-            (float(start[0]), float(start[1])),
-            (float(end[0]), float(end[1])),
+            (start[0], start[1]),
+            (end[0], end[1]),
             MapEdgeKind.REAL if len(seen) else MapEdgeKind.FRONTIER,
             len(seen),
-            int(contradictions),
-            float(wide),
+            contradictions,
+            wide,
             seen,
         )
-        for (start, end), seen, contradictions, wide in zip(edges, views, through, spread, strict=True)
+        for (start, end), seen, contradictions, wide in zip(
+            edges.tolist(), views, through.tolist(), spread.tolist(), strict=True
+        )
     )
 
 
-def _cut(edges: Floats, samples: Samples, reach: float) -> Floats:
-    """The edges (f, 2, 2), stretches without a sample for four times the reach standing as edges of their own."""
-    edge, sample = _supports(edges, _inward(edges), samples, reach)
+def _cut(edges: Floats, beside: Along, reach: float) -> tuple[Floats, Ints]:
+    """The edges (f, 2, 2), stretches without a sample for four times the reach standing as edges of their own, and the
+    edge (p,) among these that each sample supports."""
     length = np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1)
     unit = (edges[:, 1] - edges[:, 0]) / np.maximum(length, 1e-9)[:, None]
-    along = np.sum((samples.points[sample] - edges[edge, 0]) * unit[edge], axis=1)
     number = np.arange(len(edges))
-    owner = np.concatenate([number, edge, number])
-    mark = np.concatenate([np.zeros(len(edges)), np.clip(along, 0.0, length[edge]), length])
-    order = np.lexsort((mark, owner))
-    owner, mark = owner[order], mark[order]
+    owner = np.concatenate([number, beside.edge, number])
+    mark = np.concatenate([np.zeros(len(edges)), beside.along, length])
+    measured = np.repeat([False, True, False], [len(edges), len(beside.edge), len(edges)])
+    order = np.lexsort((np.repeat([0, 1, 2], [len(edges), len(beside.edge), len(edges)]), mark, owner))
+    owner, mark, measured = owner[order], mark[order], measured[order]
     bare = np.flatnonzero((np.diff(mark) > 4 * reach) & (owner[1:] == owner[:-1]))
-    margin = 1.01 * reach  # the samples at its ends shall not support a bare stretch
-    first, last = mark[bare] + margin, mark[bare + 1] - margin
-    inner = (mark[bare] > 0, mark[bare + 1] < length[owner[bare]])
-    owner = np.concatenate([number, owner[bare][inner[0]], owner[bare][inner[1]], number])
-    mark = np.concatenate([np.zeros(len(edges)), first[inner[0]], last[inner[1]], length])
-    order = np.lexsort((mark, owner))
-    owner, points = owner[order], edges[owner[order], 0] + mark[order, None] * unit[owner[order]]
-    points[np.append(owner[1:] != owner[:-1], True)] = edges[:, 1]
-    joined = owner[1:] == owner[:-1]
-    return np.asarray(np.stack([points[:-1], points[1:]], axis=1)[joined])
+    left, right = bare[measured[bare]], bare[measured[bare + 1]]
+    cut_owner = np.concatenate([owner[left], owner[right]])
+    cut_mark = np.concatenate([mark[left] + reach, mark[right + 1] - reach])
+    order = np.lexsort((cut_mark, cut_owner))
+    cut_owner, cut_mark = cut_owner[order], cut_mark[order]
+    cuts = edges[cut_owner, 0] + cut_mark[:, None] * unit[cut_owner]
+    before = np.searchsorted(cut_owner, number) + number  # the row of each edge's first piece
+    starts = np.insert(cuts, np.searchsorted(cut_owner, number), edges[:, 0], axis=0)
+    ends = np.insert(cuts, np.searchsorted(cut_owner, number, side="right"), edges[:, 1], axis=0)
+    passed = np.searchsorted(cut_owner + cut_mark / (length[cut_owner] + 1), beside.edge + _share(beside, length))
+    return np.stack([starts, ends], axis=1), before[beside.edge] + passed - np.searchsorted(cut_owner, beside.edge)
+
+
+def _share(beside: Along, length: Floats) -> Floats:
+    """How far along its edge each sample lies, in less than one."""
+    return np.asarray(beside.along / (length[beside.edge] + 1))
 
 
 def _inward(edges: Floats) -> Floats:
@@ -83,18 +89,11 @@ def _inward(edges: Floats) -> Floats:
     return np.asarray(np.stack([-along[:, 1], along[:, 0]], axis=1) / length[:, None])
 
 
-def _supports(edges: Floats, inward: Floats, samples: Samples, reach: float) -> tuple[Ints, Ints]:
-    """Pairs (edge, sample) where the sample lies on the edge and faces its free side."""
-    tree = shapely.STRtree([shapely.LineString(edge) for edge in edges])
-    sample, edge = tree.query(shapely.points(samples.points), predicate="dwithin", distance=reach)
-    same_side = np.sum(samples.normals[sample] * inward[edge], axis=1) > 0.5
-    return edge[same_side], sample[same_side]
-
-
 def _views_by_edge(edge: Ints, view: Ints, count: int) -> list[Ints]:
     """Distinct views of every edge."""
-    pairs = np.unique(np.stack([edge, view], axis=1), axis=0)
-    return np.split(pairs[:, 1], np.searchsorted(pairs[:, 0], np.arange(1, count)))
+    many = int(view.max(initial=0)) + 1
+    owner, seen = np.divmod(np.unique(edge * many + view), many)
+    return np.split(seen, np.searchsorted(owner, np.arange(1, count)))
 
 
 def _spread(edge: Ints, offset: Floats, count: int) -> Floats:

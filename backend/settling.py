@@ -23,7 +23,7 @@ class SettleSettings:
 
     position_sigma: float = 0.05  # metres; larger lets views move farther from their poses
     heading_sigma: float = 0.01  # radians; larger lets views turn farther from their poses
-    passes: int = 8  # more match surfaces anew more often on the way from the widest to the finest
+    passes: int = 12  # more match surfaces anew more often on the way from the widest to the finest
     widest: float = 0.08  # metres; larger matches surfaces from farther apart in the first pass
     finest: float = 0.015  # metres; larger keeps more of the disagreement in the last pass
     coarse_cell: float = 0.6  # metres; larger joins more views to a line in the first pass

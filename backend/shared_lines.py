@@ -97,7 +97,11 @@ def _loaded(own, line, samples, lines, sums, used):  # type: ignore[no-untyped-d
             gradient[at, a] += w * jacobian[a] * residuals[i]
             for b in range(3):
                 blocks[at, a, b] += w * jacobian[a] * jacobian[b]
-        load += w * np.array([1.0, along, along**2, residuals[i], along * residuals[i]])
+        load[0] += w
+        load[1] += w * along
+        load[2] += w * along**2
+        load[3] += w * residuals[i]
+        load[4] += w * along * residuals[i]
     return used, load
 
 

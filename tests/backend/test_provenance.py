@@ -61,3 +61,9 @@ def test_cutting_edges_loses_no_length() -> None:
     samples = wall_samples(np.array([1.0, 0.0]), np.array([2.0, 0.0]), 5, 0.01, np.random.default_rng(2))
     edges = label_edges(boundary_edges(ROOM), samples, grid_of_rooms(0.0).counts(), 0.06)
     assert sum(np.hypot(e.end[0] - e.start[0], e.end[1] - e.start[1]) for e in edges) == pytest.approx(10.0)
+
+
+def test_a_lone_sample_at_an_edges_end_supports_no_more_than_that_end() -> None:
+    corner = wall_samples(np.array([0.0, 0.0]), np.array([0.02, 0.0]), 1, 0.0, np.random.default_rng(2))
+    edges = label_edges(boundary_edges(ROOM), corner, grid_of_rooms(0.0).counts(), 0.06)
+    assert sum(edge.end[0] - edge.start[0] for edge in edges if edge.kind == MapEdgeKind.REAL) == pytest.approx(0.06)
