@@ -17,15 +17,30 @@ def contours(mask: NDArray[np.bool_]) -> list[Floats]:
     with the true cells on its left: outer rings turn counter-clockwise, holes clockwise. Cells that touch
     at a corner only are kept apart.
     """
-    sides = np.zeros((mask.shape[0] + 1, mask.shape[1] + 1), dtype=np.uint8)
-    sides[:-1, :-1] |= np.where(mask & ~np.roll(mask, 1, axis=0), 1, 0).astype(np.uint8)  # along +x, below the cell
-    sides[:-1, 1:] |= np.where(mask & ~np.roll(mask, -1, axis=1), 2, 0).astype(np.uint8)  # along +y, right of it
-    sides[1:, 1:] |= np.where(mask & ~np.roll(mask, -1, axis=0), 4, 0).astype(np.uint8)  # along −x, above it
-    sides[1:, :-1] |= np.where(mask & ~np.roll(mask, 1, axis=1), 8, 0).astype(np.uint8)  # along −y, left of it
+    sides = _sides(mask)
     rows, columns = np.nonzero(sides)
-    length = int(np.bitwise_count(sides).sum())
+    length = int(np.bitwise_count(sides[rows, columns]).sum())
     middles, ends = _trace(sides, rows, columns, length)
     return np.split(middles, ends[:-1]) if len(ends) else []
+
+
+@njit(cache=True)
+def _sides(mask):  # type: ignore[no-untyped-def]
+    """Which ways a contour leaves every corner of the cells: bits 1, 2, 4, 8 along +x, +y, −x, −y."""
+    rows, columns = mask.shape
+    sides = np.zeros((rows + 1, columns + 1), dtype=np.uint8)
+    for y in range(1, rows - 1):
+        for x in range(1, columns - 1):
+            if mask[y, x]:
+                if not mask[y - 1, x]:
+                    sides[y, x] |= 1
+                if not mask[y, x + 1]:
+                    sides[y, x + 1] |= 2
+                if not mask[y + 1, x]:
+                    sides[y + 1, x + 1] |= 4
+                if not mask[y, x - 1]:
+                    sides[y + 1, x] |= 8
+    return sides
 
 
 @njit(cache=True)
@@ -88,7 +103,10 @@ def _signed_area(ring: Floats) -> float:
 
 
 def _valid(rings: list[Floats]) -> list[Polygon]:
-    return [part for ring in rings for part in _polygons(shapely.make_valid(Polygon(ring)))]
+    polygons = np.array([Polygon(ring) for ring in rings], dtype=object)
+    crossing = ~shapely.is_valid(polygons)
+    polygons[crossing] = shapely.make_valid(polygons[crossing])
+    return [part for polygon in polygons for part in _polygons(polygon)]
 
 
 def _polygons(shape: BaseGeometry) -> list[Polygon]:

@@ -3,6 +3,10 @@
 Real pieces are kept or contradicted; fake ones were seen behind by another view, or stay open.
 """
 
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
+from typing import overload
+
 import numpy as np
 import shapely
 from numpy.typing import NDArray
@@ -12,6 +16,30 @@ from backend.sight import Sight
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+
+class Decisions(Sequence[Decision]):
+    """The decisions of a map, worked out when somebody first looks at them."""
+
+    def __init__(self, decide: Callable[[], tuple[Decision, ...]]) -> None:
+        self._decide = decide
+
+    @cached_property
+    def _made(self) -> tuple[Decision, ...]:
+        return self._decide()
+
+    @overload
+    def __getitem__(self, index: int) -> Decision: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Decision, ...]: ...
+    def __getitem__(self, index: int | slice) -> Decision | tuple[Decision, ...]:
+        return self._made[index]
+
+    def __len__(self) -> int:
+        return len(self._made)
+
+    def __iter__(self) -> Iterator[Decision]:
+        return iter(self._made)
 
 
 def decisions_of(

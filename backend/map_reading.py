@@ -9,7 +9,7 @@ from scipy import ndimage
 from shapely import MultiPolygon
 
 from backend.contours import as_polygons, assemble, contours
-from backend.decisions import decisions_of
+from backend.decisions import Decisions, decisions_of
 from backend.doors import DoorSettings, Opening, doors_of
 from backend.evidence import Counts
 from backend.far_ground import far_ground
@@ -82,11 +82,11 @@ def read_map(
     doors = doors_of(free, walls, _reported(views), sight, settings.doors)
     objects = apart_from(objects, doors, settings.doors.beside)
     safety = as_polygons(free.buffer(-settings.inset, join_style="mitre"))
-    decided = _decisions(views, (mask, counts), sight, edges, settings)
-    inferred = tuple(_inferred(thing, sight) for thing in objects if thing.inferred)
+    deep = round(settings.deep / counts.cell)
+    decided = Decisions(lambda: _decisions(views, (mask, counts, deep), sight, (edges, objects)))
     leaks, told = alarms(free, contested, samples, sight, settings.panel)
     reasons = tuple(why(views.index[measuring], views.index[through]) for measuring, through in told)
-    room_map = RoomMap(free, safety, edges, doors, objects, leaks, decided + inferred, reasons)
+    room_map = RoomMap(free, safety, edges, doors, objects, leaks, decided, reasons)
     return _by_index(room_map, views.index)
 
 
@@ -131,18 +131,21 @@ def _reported(views: PlacedViews) -> Opening:
 
 def _decisions(
     views: PlacedViews,
-    votes: tuple[NDArray[np.bool_], Counts],
+    votes: tuple[NDArray[np.bool_], Counts, int],
     sight: Sight,
-    edges: tuple[MapEdge, ...],
-    settings: ReadingSettings,
+    found: tuple[tuple[MapEdge, ...], tuple[Obstacle, ...]],
 ) -> tuple[Decision, ...]:
-    mask, counts = votes
-    inner = ndimage.minimum_filter(mask.view(np.uint8), 2 * round(settings.deep / counts.cell) + 1) > 0
+    """What became of every piece of the views; votes: the free cells, and how many of them are deep inside."""
+    (mask, counts, depth), (edges, objects) = votes, found
+    inner = ndimage.minimum_filter(mask.view(np.uint8), 2 * depth + 1) > 0
     deep = []
     for ring in views.rings:
         cell = np.floor(0.5 * (ring + np.roll(ring, -1, axis=0)) / counts.cell).astype(np.int64) - counts.corner
         deep.append(inner[cell[:, 1], cell[:, 0]])
-    return decisions_of(views.rings, views.reals, deep, sight, edges)
+    made = decisions_of(views.rings, views.reals, deep, sight, edges)
+    inferred = tuple(_inferred(thing, sight) for thing in objects if thing.inferred)
+    index = views.index
+    return tuple(replace(d, owners=index[d.owners], deciders=index[d.deciders]) for d in made + inferred)
 
 
 def _inferred(thing: Obstacle, sight: Sight) -> Decision:
@@ -161,5 +164,4 @@ def _by_index(room_map: RoomMap, index: NDArray[np.int64]) -> RoomMap:
         edges=tuple(replace(edge, views=index[edge.views]) for edge in room_map.edges),
         doors=tuple(replace(door, views=index[door.views]) for door in room_map.doors),
         obstacles=tuple(replace(thing, views=index[thing.views]) for thing in room_map.obstacles),
-        decisions=tuple(replace(d, owners=index[d.owners], deciders=index[d.deciders]) for d in room_map.decisions),
     )

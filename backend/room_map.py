@@ -1,5 +1,6 @@
 """The room map: free space whose every edge says who saw it and how surely."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -95,5 +96,5 @@ class RoomMap:
     doors: tuple[Door, ...]
     obstacles: tuple[Obstacle, ...]
     leaks: Floats
-    decisions: tuple[Decision, ...] = ()
+    decisions: Sequence[Decision] = ()
     leak_reasons: tuple[str, ...] = ()
