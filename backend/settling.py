@@ -15,6 +15,7 @@ from backend.shared_lines import normal_equations, solved
 
 Floats = NDArray[np.float64]
 GOLDEN = 0.618034
+RIGID = 1e12  # stiffness of a view that stays
 
 
 @dataclass(frozen=True)
@@ -33,26 +34,62 @@ class SettleSettings:
 
 def settle(local: Samples, poses: Floats, settings: SettleSettings) -> Floats:
     """Poses (v, 3) after settling; `local` are samples in the frames of their views, these rising rows of `poses`."""
-    settled = poses.copy()
+    return _passes(local, poses, poses, np.ones(len(poses), dtype=np.bool_), settings)
+
+
+def settle_among(
+    local: Samples, given: Floats, settled: Floats, moving: NDArray[np.bool_], settings: SettleSettings
+) -> Floats:
+    """Poses (v, 3) where only the `moving` views (v,), put at `given`, settle: the others stay at `settled`.
+
+    It costs what the moving views see, not the whole map.
+    """
+    start = np.where(moving[:, None], given, settled)
+    return _passes(_about(local, start, moving, settings.coarse_cell), given, start, moving, settings)
+
+
+def _about(local: Samples, poses: Floats, moving: NDArray[np.bool_], size: float) -> Samples:
+    """The samples of the moving views, and those of the others in the same cells of `size` metres and beside these."""
+    cell = np.floor(local.placed(poses).points / size).astype(np.int64)
+    cell -= cell.min(axis=0, initial=0) - 1
+    width = int(cell[:, 1].max(initial=0)) + 2
+    code = cell[:, 0] * width + cell[:, 1]
+    seen = np.zeros(int(code.max(initial=0)) + 2 * width, dtype=np.bool_)
+    own = np.unique(code[moving[local.view]])
+    for beside in (-width, 0, width):
+        seen[own + beside - 1] = seen[own + beside] = seen[own + beside + 1] = True
+    return local.where(seen[code])
+
+
+def _passes(
+    local: Samples, given: Floats, start: Floats, moving: NDArray[np.bool_], settings: SettleSettings
+) -> Floats:
+    settled = start.copy()
     for step in range(settings.passes):
         share = step / max(settings.passes - 1, 1)
         width = settings.widest * (settings.finest / settings.widest) ** share
         size = settings.coarse_cell * (settings.fine_cell / settings.coarse_cell) ** share
         shift = (step * GOLDEN) % 1.0
         grid = CellGrid(size, np.array([shift, (shift + 0.5) % 1.0]) * size, shift * np.pi / 6)
-        settled = settled + _step(local, (settled, poses), (grid, width), settings)
+        found = _step(local, (settled, given, moving), (grid, width), settings)
+        settled[moving] += found[moving]
     return settled
 
 
 def _step(
-    local: Samples, poses: tuple[Floats, Floats], how: tuple[CellGrid, float], settings: SettleSettings
+    local: Samples,
+    views: tuple[Floats, Floats, NDArray[np.bool_]],
+    how: tuple[CellGrid, float],
+    settings: SettleSettings,
 ) -> Floats:
-    """The Gauss–Newton step (v, 3) of all views; `poses`: where they stand now, and where they were put."""
-    (settled, given), (grid, width) = poses, how
+    """The Gauss–Newton step (v, 3) of all views; of these, where they stand now, where they were put, and who moves."""
+    (settled, given, moving), (grid, width) = views, how
     placed = local.placed(settled)
     scale = np.hypot(placed.sigma, width)
     lines = cell_lines(placed.points, placed.normals, placed.weight / scale**2, scale, grid)
     weight = lines.trust * placed.weight / (settings.independent * scale**2)
     blocks, gradient, shared = normal_equations(placed, weight, lines, settled)
-    stiffness = 1 / np.array([settings.position_sigma, settings.position_sigma, settings.heading_sigma]) ** 2
-    return solved(blocks + np.diag(stiffness), shared, -gradient - stiffness * (settled - given))
+    prior = 1 / np.array([settings.position_sigma, settings.position_sigma, settings.heading_sigma]) ** 2
+    stiffness = np.where(moving[:, None], prior, RIGID)
+    right = np.where(moving[:, None], -gradient - prior * (settled - given), 0.0)
+    return solved(blocks + stiffness[:, :, None] * np.eye(3), shared, right)
