@@ -13,15 +13,22 @@ Run = tuple[int, int, int]  # first point, one past the last, face (−1 for non
 
 def snap_view(ring: Floats, origin: Floats, surfaces: Surfaces, label: Ints, faces: WallFaces) -> Floats:
     """The placed ring (m, 2) with its measured corners on their faces (n,), each moved along its own beam."""
-    corner, face = surfaces.corner[label >= 0], label[label >= 0]
-    beam = ring[corner] - origin
-    slope = np.sum(beam * faces.normals[face], axis=1)
-    steep = slope < -0.15 * np.linalg.norm(beam, axis=1)
-    corner, face, beam, slope = corner[steep], face[steep], beam[steep], slope[steep]
-    share = np.sum((faces.centres[face] - origin) * faces.normals[face], axis=1) / slope
     snapped = ring.copy()
-    snapped[corner] = origin + share[:, None] * beam
+    snapped[surfaces.corner] = onto_faces(ring[surfaces.corner], origin, label, faces)
     return snapped
+
+
+def onto_faces(points: Floats, origins: Floats, label: Ints, faces: WallFaces) -> Floats:
+    """Points (n, 2) moved onto their faces (n,) along the beams from the origins (n, 2) or (2,), where these are not
+    too slanting and there is a face."""
+    if not len(faces.centres):
+        return points
+    normals, beam = faces.normals[label], points - origins
+    slope = np.sum(beam * normals, axis=1)
+    height = np.sum((faces.centres[label] - origins) * normals, axis=1)
+    steep = (label >= 0) & (slope < -0.15 * np.linalg.norm(beam, axis=1))
+    share = np.where(steep, height / np.where(steep, slope, 1.0), 1.0)
+    return np.where(steep[:, None], origins + share[:, None] * beam, points)
 
 
 def snap_ring(ring: Floats, faces: WallFaces, reach: float) -> Floats:
