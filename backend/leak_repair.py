@@ -61,15 +61,19 @@ def open_bins(bins: FaceBins, mask: NDArray[np.bool_], counts: Counts) -> NDArra
     return np.asarray(np.all([mask[cell[:, 1], cell[:, 0]] for cell in cells], axis=0))
 
 
-def standing(bins: FaceBins, sight: Sight, depth: float, share: float = 0.5) -> NDArray[np.bool_]:
+def standing(bins: FaceBins, through: Ints, share: float = 0.5) -> NDArray[np.bool_]:
     """Bins (b,) that more than a share of those views measured that looked at them from the front.
 
-    The others saw through, to `depth` metres behind them.
+    The others saw through (b,).
     """
+    return np.asarray((1 - share) * bins.support > share * through)
+
+
+def seen_through(bins: FaceBins, sight: Sight, depth: float) -> Ints:
+    """How many views (b,) saw from the front to `depth` metres behind each bin."""
     point, view = sight.pairs(bins.middles - depth * bins.normals)
     ahead = np.sum((sight.origins[view] - bins.middles[point]) * bins.normals[point], axis=1) > 0
-    through = np.bincount(point[ahead], minlength=len(bins.support))
-    return np.asarray((1 - share) * bins.support > share * through)
+    return np.bincount(point[ahead], minlength=len(bins.support))
 
 
 def closed(mask: NDArray[np.bool_], bins: FaceBins, counts: Counts, depth: float) -> NDArray[np.bool_]:

@@ -15,7 +15,7 @@ from backend.evidence import Counts
 from backend.far_ground import far_ground
 from backend.hidden_objects import ObjectSettings, apart_from, objects_in, without_slivers
 from backend.leak_alarm import alarms, why
-from backend.leak_repair import closed, open_bins, repaired, standing, supported_bins
+from backend.leak_repair import closed, open_bins, repaired, seen_through, standing, supported_bins
 from backend.provenance import boundary_edges, label_edges
 from backend.room_map import Decision, MapEdge, Obstacle, RoomMap, Verdict
 from backend.samples import Samples
@@ -68,8 +68,9 @@ def read_map(
     """The room map that the votes, the faces and the placed samples (rows of views) tell."""
     sight = sight_of(views.rings, views.origins)
     measured = supported_bins(samples, faces)
-    bins = measured.where(standing(measured, sight, settings.panel))
-    contested = measured.where(standing(measured, sight, settings.panel, settings.contested))
+    through = seen_through(measured, sight, settings.panel)
+    bins = measured.where(standing(measured, through))
+    contested = measured.where(standing(measured, through, settings.contested))
     mask = counts.free > counts.wall
     mask = closed(mask, bins.where(open_bins(bins, mask, counts)), counts, settings.panel)
     mask |= _far_ground(views, samples, mask, counts, settings.roomy)

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -40,6 +41,20 @@ class Samples:
         before = np.repeat(total[first] - self.weight[first], np.diff(np.append(first, len(self.view))))
         steps = np.floor((total - before) / spacing) - np.floor((total - before - self.weight) / spacing)
         return replace(self, weight=steps * spacing).where(steps > 0)
+
+    def about(self, points: Floats, size: float) -> NDArray[np.bool_]:
+        """Whether the samples (n,) lie in the same cells of `size` metres as points (m, 2), or beside these."""
+        if not len(points):
+            return np.zeros(len(self.points), dtype=np.bool_)
+        low = points.min(axis=0) - 2 * size
+        shape = np.ceil((points.max(axis=0) + 2 * size - low) / size).astype(np.int64)
+        near = np.zeros(shape, dtype=np.bool_)
+        near[tuple(((points - low) / size).astype(np.int64).T)] = True
+        near = ndimage.binary_dilation(near, np.ones((3, 3), dtype=np.bool_))
+        cell = np.floor((self.points - low) / size).astype(np.int64)
+        inside: NDArray[np.bool_] = np.all((cell >= 0) & (cell < shape), axis=1)
+        inside[inside] = near[tuple(cell[inside].T)]
+        return inside
 
     def where(self, chosen: NDArray[np.bool_]) -> "Samples":
         """The samples for which `chosen` (n,) holds."""

@@ -45,20 +45,9 @@ def settle_among(
     It costs what the moving views see, not the whole map.
     """
     start = np.where(moving[:, None], given, settled)
-    return _passes(_about(local, start, moving, settings.coarse_cell), given, start, moving, settings)
-
-
-def _about(local: Samples, poses: Floats, moving: NDArray[np.bool_], size: float) -> Samples:
-    """The samples of the moving views, and those of the others in the same cells of `size` metres and beside these."""
-    cell = np.floor(local.placed(poses).points / size).astype(np.int64)
-    cell -= cell.min(axis=0, initial=0) - 1
-    width = int(cell[:, 1].max(initial=0)) + 2
-    code = cell[:, 0] * width + cell[:, 1]
-    seen = np.zeros(int(code.max(initial=0)) + 2 * width, dtype=np.bool_)
-    own = np.unique(code[moving[local.view]])
-    for beside in (-width, 0, width):
-        seen[own + beside - 1] = seen[own + beside] = seen[own + beside + 1] = True
-    return local.where(seen[code])
+    placed = local.placed(start)
+    near = placed.about(placed.points[moving[local.view]], settings.coarse_cell)
+    return _passes(local.where(near), given, start, moving, settings)
 
 
 def _passes(

@@ -37,23 +37,32 @@ class Sight:
 
 def sight_of(rings: list[Floats], origins: Floats) -> Sight:
     """The sight of views from their placed counter-clockwise rings (m, 2) and origins (v, 2)."""
-    parts = [_fan(ring, origin) for ring, origin in zip(rings, origins, strict=True)]
-    first = np.concatenate([[0], np.cumsum([len(bearing) for bearing, _, _ in parts])])
-    bearing, width, edges = (np.concatenate([part[i] for part in parts]) for i in range(3))
+    view = np.repeat(np.arange(len(rings)), [len(ring) for ring in rings])
+    follower = np.arange(1, len(view) + 1)
+    ends = np.cumsum([len(ring) for ring in rings])
+    follower[ends - 1] = ends - [len(ring) for ring in rings]
+    corners = np.concatenate(rings)
+    edges = np.stack([corners, corners[follower]], axis=1)
     boxes = np.array([(ring.min(axis=0), ring.max(axis=0)) for ring in rings])
-    return Sight(origins, first, bearing, width, edges, boxes)
+    fans = _fans(edges, view, origins)
+    return Sight(origins, np.searchsorted(fans[0], np.arange(len(rings) + 1)), *fans[1:], boxes)
 
 
-def _fan(ring: Floats, origin: Floats) -> tuple[Floats, Floats, Floats]:
-    """Bearings, widths and edges of a ring around its origin; edges that end at the origin span nothing."""
-    edges = np.stack([ring, np.roll(ring, -1, axis=0)], axis=1)
-    edges = edges[np.linalg.norm(edges - origin, axis=2).min(axis=1) > 1e-6]
-    angle = np.arctan2(edges[:, :, 1] - origin[1], edges[:, :, 0] - origin[0])
+def _fans(edges: Floats, view: Ints, origins: Floats) -> tuple[Ints, Floats, Floats, Floats]:
+    """View, bearing, width and ends of the edges (e, 2, 2) around the origins of their views (e,), by bearing.
+
+    Edges that end at their origin span nothing.
+    """
+    arm = edges - origins[view, None]
+    spanning = np.sum(arm**2, axis=2).min(axis=1) > 1e-12
+    edges, view, arm = edges[spanning], view[spanning], arm[spanning]
+    angle = np.arctan2(arm[:, :, 1], arm[:, :, 0])
+    start = angle[np.searchsorted(view, view), 0]  # of the view's first edge
     width = np.mod(angle[:, 1] - angle[:, 0], 2 * np.pi)
-    bearing = np.mod(angle[:, 0] - angle[0, 0], 2 * np.pi)
-    order = np.argsort(np.where(width < np.pi, bearing, np.inf))[: np.count_nonzero(width < np.pi)]
-    absolute = bearing[order] + angle[0, 0]
-    return absolute, width[order], edges[order]
+    bearing = np.mod(angle[:, 0] - start, 2 * np.pi)
+    turning = np.flatnonzero(width < np.pi)
+    order = turning[np.lexsort((bearing[turning], view[turning]))]
+    return view[order], (bearing + start)[order], width[order], edges[order]
 
 
 @njit(cache=True)

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from backend.cell_lines import SECTORS, CellGrid, cell_lines
+from backend.cell_lines import SECTORS, CellGrid, cell_lines, distinct_views
 from backend.samples import Samples
 
 Floats = NDArray[np.float64]
@@ -100,8 +100,7 @@ def _spans(samples: Samples, label: Ints, fitted: Floats) -> tuple[Floats, Ints]
     spans = np.zeros((len(fitted), 2))
     np.minimum.at(spans[:, 0], face, along)
     np.maximum.at(spans[:, 1], face, along)
-    pairs = np.unique(np.stack([face, samples.view[known]], axis=1), axis=0)
-    return spans, np.bincount(pairs[:, 0], minlength=len(fitted))
+    return spans, distinct_views(face, samples.view[known], len(fitted))
 
 
 @njit(cache=True)

@@ -3,7 +3,7 @@
 import numpy as np
 from shapely import MultiPolygon, box
 
-from backend.leak_repair import leaking, repaired, standing, supported_bins
+from backend.leak_repair import leaking, repaired, seen_through, standing, supported_bins
 from backend.polygon_merging import merge_views
 from backend.sight import sight_of
 from backend.wall_faces import FaceSettings, fuse_faces
@@ -23,9 +23,9 @@ def test_a_face_stands_unless_more_views_saw_through_it_from_the_front() -> None
     through_twice = sight_of([THROUGH] * 2, np.array([front, front]))
     through_often = sight_of([THROUGH] * 5, np.tile(front, (5, 1)))
     from_behind = sight_of([THROUGH] * 5, np.tile(behind, (5, 1)))
-    assert standing(bins, through_twice, 0.05).all()
-    assert not standing(bins, through_often, 0.05).any()
-    assert standing(bins, from_behind, 0.05).all()
+    assert standing(bins, seen_through(bins, through_twice, 0.05)).all()
+    assert not standing(bins, seen_through(bins, through_often, 0.05)).any()
+    assert standing(bins, seen_through(bins, from_behind, 0.05)).all()
 
 
 def test_faces_leak_inside_free_ground_only() -> None:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from backend.samples import Samples
 from tests.backend.placed_samples import joined, wall_samples
 
 
@@ -29,3 +30,14 @@ def test_thinning_keeps_the_weight_and_does_not_depend_on_other_views() -> None:
     assert len(thin.view) < 0.3 * (len(one.view) + len(other.view))
     np.testing.assert_allclose(thin.weight.sum(), one.weight.sum() + other.weight.sum(), atol=0.4)
     np.testing.assert_array_equal(one.thinned(0.2).points, thin.points[: len(one.thinned(0.2).points)])
+
+
+def test_samples_about_a_point_are_all_that_lie_within_a_cell_of_it() -> None:
+    rng = np.random.default_rng(3)
+    points, ones = rng.uniform(-2, 2, (500, 2)), np.ones(500)
+    samples = Samples(points, points, ones.astype(int), ones, ones, ones.astype(bool))
+    about = samples.about(np.array([[0.3, -0.4]]), 0.2)
+    away = np.abs(points - [0.3, -0.4]).max(axis=1)
+    assert about[away < 0.2].all()
+    assert not about[away > 0.4].any()
+    assert not samples.about(np.empty((0, 2)), 0.2).any()
