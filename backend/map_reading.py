@@ -1,6 +1,7 @@
 """Reading the map: from votes and fused faces back to polygons, with their provenance and what follows from it."""
 
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 import shapely
@@ -84,7 +85,7 @@ def read_map(
     objects = apart_from(objects, doors, settings.doors.beside)
     safety = as_polygons(free.buffer(-settings.inset, join_style="mitre"))
     deep = round(settings.deep / counts.cell)
-    decided = Decisions(lambda: _decisions(views, (mask, counts, deep), sight, (edges, objects)))
+    decided = Decisions(partial(_decisions, views, (mask, counts, deep), sight, (edges, objects)))
     leaks, told = alarms(free, contested, samples, sight, settings.panel)
     reasons = tuple(why(views.index[measuring], views.index[through]) for measuring, through in told)
     room_map = RoomMap(free, safety, edges, doors, objects, leaks, decided, reasons)

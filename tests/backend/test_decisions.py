@@ -1,5 +1,7 @@
 """Claims about the record of decisions."""
 
+import pickle
+
 import numpy as np
 from shapely import Point, box
 
@@ -45,3 +47,10 @@ def test_every_edge_of_every_view_is_decided_once() -> None:
     assert kept >= 360
     walls = [made for made in room_map.decisions if made.verdict == Verdict.KEPT]
     assert all(len(made.deciders) for made in walls)
+
+
+def test_a_map_with_its_decisions_can_be_sent_to_another_process() -> None:
+    room_map = map_with_a_pillar_only_the_first_view_met()
+    sent = pickle.loads(pickle.dumps(room_map))
+    assert len(sent.decisions) == len(room_map.decisions) > 0
+    assert sent.decisions[0].verdict == room_map.decisions[0].verdict
