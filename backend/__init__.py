@@ -3,7 +3,7 @@
 Poses: `odometry`, `loop_closure`, `landmark_map`, `factor_graph`, `joint_refinement`, `estimate`.
 What a view says: `view`, `surfaces`, `samples`, `ballots`, `sight`.
 Merging: `polygon_merging` (the verb), `settling`, `cell_lines`, `wall_faces`, `snapping`, `evidence`, `far_ground`,
-`contours`.
+`grazing`, `contours`.
 The map: `room_map` (the noun), `map_reading`, `provenance`, `leak_repair`, `leak_alarm`, `hidden_objects`, `occluders`,
 `doors`, `decisions`.
 From the map on: `next_view`, `thin_rectangles`.

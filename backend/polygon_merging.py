@@ -12,16 +12,20 @@ from numpy.typing import NDArray
 
 from backend.ballots import ballot_of
 from backend.evidence import Ballot, EvidenceGrid
+from backend.grazing import up_to_mirrors, walls_of
 from backend.map_reading import PlacedViews, ReadingSettings, read_map
 from backend.room_map import RoomMap
 from backend.samples import Samples
-from backend.settling import SettleSettings, settle
-from backend.snapping import snap_view
+from backend.settled_poses import SettledPoses
+from backend.settling import SettleSettings
+from backend.snapping import onto_faces, snap_view
 from backend.surfaces import Surfaces, surfaces_of
 from backend.view import View, place
 from backend.wall_faces import FaceSettings, WallFaces, fuse_faces
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+VOTED = 1e-3  # metres a corner may lie off its vote
 
 
 class MergingError(Exception):
@@ -48,6 +52,7 @@ class _Placed:
     surfaces: Surfaces
     pose: Floats
     ballot: Ballot
+    voted: Floats  # the pose (3,) it voted from: where it settled, once the map was read
 
 
 class Merger:
@@ -57,6 +62,7 @@ class Merger:
         self.settings = settings or MergeSettings()
         self._evidence = EvidenceGrid(self.settings.cell)
         self._placed: dict[int, _Placed] = {}
+        self._settled = SettledPoses(self.settings.settling)
 
     def add(self, view: View, pose: Floats, index: int) -> None:
         """Let the view `index` vote from its pose (3,). Raises MergingError if it already did."""
@@ -65,52 +71,56 @@ class Merger:
         surfaces = surfaces_of(view, self.settings.piece, self.settings.finest)
         ballot = self._ballot(surfaces, place(surfaces.ring, pose), place(view.origin[None], pose)[0])
         self._evidence.cast(ballot, 1)
-        self._placed[index] = _Placed(view, surfaces, np.asarray(pose, dtype=np.float64), ballot)
+        given = np.asarray(pose, dtype=np.float64)
+        self._placed[index] = _Placed(view, surfaces, given, ballot, given)
 
     def move(self, index: int, pose: Floats) -> None:
         """Take the votes of a view back and cast them from another pose (3,)."""
         if index not in self._placed:
             raise MergingError(f"view {index} cannot move: it was never added")
-        placed = self._placed.pop(index)
-        self._evidence.cast(placed.ballot, -1)
-        self.add(placed.view, pose, index)
+        view = self._placed[index].view
+        self.remove(index)
+        self.add(view, pose, index)
+
+    def remove(self, index: int) -> None:
+        """Take a view out of the map. Raises MergingError if it is not in it."""
+        if index not in self._placed:
+            raise MergingError(f"view {index} cannot be removed: it was never added")
+        self._evidence.cast(self._placed.pop(index).ballot, -1)
+        self._settled.forget(index)
 
     def result(self) -> RoomMap:
         """The room map of all views so far. Raises MergingError when there are none."""
         if not self._placed:
             raise MergingError("a map needs one view at least")
         local = self._samples()
-        poses = settle(
-            local.where(local.sure).thinned(self.settings.spacing),
-            np.array([p.pose for _, p in self._in_order()]),
-            self.settings.settling,
-        )
+        given = np.array([placed.pose for _, placed in self._in_order()])
+        sure = local.where(local.sure).thinned(self.settings.spacing)
+        poses = self._settled.settled(sure, np.array(sorted(self._placed)), given)
         samples = local.placed(poses)
         faces = fuse_faces(samples, self.settings.faces)
-        self._vote_again(poses, faces)
-        return read_map(self._placed_views(poses), samples, faces, self._evidence.counts(), self.settings.reading)
+        far = self._vote_again(poses, (samples, faces))
+        return read_map(self._placed_views(poses, far), samples, faces, self._evidence.counts(), self.settings.reading)
 
     @property
     def evidence_bytes(self) -> int:
         """Memory the votes take."""
         return self._evidence.bytes
 
-    def _placed_views(self, poses: Floats) -> PlacedViews:
-        """The views as they voted."""
+    def _placed_views(self, poses: Floats, far: dict[int, Floats]) -> PlacedViews:
+        """The views as they voted; far: by row, the far rings of the wide ones."""
         everyone = self._in_order()
-        origins = [place(placed.view.origin[None], pose)[0] for (_, placed), pose in zip(everyone, poses, strict=True)]
         openings = [
             place(p.view.openings.reshape(-1, 2), pose).reshape(-1, 2, 2)
             for (_, p), pose in zip(everyone, poses, strict=True)
         ]
-        wide = [i for i, (_, placed) in enumerate(everyone) if placed.view.wide is not None]
         return PlacedViews(
             np.array([index for index, _ in everyone]),
             [placed.ballot.free * self.settings.cell for _, placed in everyone],
-            {i: place(everyone[i][1].surfaces.far, poses[i]) for i in wide},
+            far,
             np.concatenate([placed.surfaces.aside for _, placed in everyone]),
             [placed.surfaces.real for _, placed in everyone],
-            np.array(origins),
+            self._origins(poses),
             openings,
         )
 
@@ -125,19 +135,46 @@ class Merger:
             ring, surfaces.real & sure & np.roll(sure, -1), origin, self.settings.wall_strip, self.settings.cell
         )
 
-    def _vote_again(self, poses: Floats, faces: WallFaces) -> None:
-        """Every view votes with its measured corners on the fused faces; only changed ballots are cast anew."""
-        end = 0
-        for (index, placed), pose in zip(self._in_order(), poses, strict=True):
+    def _origins(self, poses: Floats) -> Floats:
+        """Where the sensors of the views sat (v, 2)."""
+        everyone = zip(self._in_order(), poses, strict=True)
+        return np.array([place(placed.view.origin[None], pose)[0] for (_, placed), pose in everyone])
+
+    def _vote_again(self, poses: Floats, measured: tuple[Samples, WallFaces]) -> dict[int, Floats]:
+        """Every view votes with its measured corners on the fused faces; only changed ballots are cast anew.
+
+        Views of a wide beam vote no farther than mirrors let them see; their far rings (m, 2) up to there, by row.
+        """
+        everyone, origins, far = self._in_order(), self._origins(poses), {}
+        samples, faces = measured
+        wide = any(placed.view.wide is not None for _, placed in everyone)
+        rings = [place(placed.surfaces.ring, pose) for (_, placed), pose in zip(everyone, poses, strict=True)]
+        walls = walls_of(faces, samples, rings, origins) if wide else None
+        ends = np.searchsorted(samples.view, np.arange(len(everyone) + 1))
+        again = np.arange(len(everyone)) if wide else self._moved(poses, samples, origins, faces)
+        for row in again:
+            index, placed = everyone[row]
             surfaces = placed.surfaces
-            start, end = end, end + len(surfaces.corner)
-            ring, origin = place(surfaces.ring, pose), place(placed.view.origin[None], pose)[0]
-            snapped = snap_view(ring, origin, surfaces, faces.label[start:end], faces)
-            ballot = self._ballot(surfaces, snapped, origin)
+            start, end = ends[row], ends[row + 1]
+            snapped = snap_view(rings[row], origins[row], surfaces, faces.label[start:end], faces)
+            if walls is not None and placed.view.wide is not None:
+                snapped, far[row] = up_to_mirrors(snapped, place(surfaces.far, poses[row]), origins[row], walls)
+            ballot = self._ballot(surfaces, snapped, origins[row])
             if not np.array_equal(ballot.free, placed.ballot.free):
                 self._evidence.cast(placed.ballot, -1)
                 self._evidence.cast(ballot, 1)
-                self._placed[index] = replace(placed, ballot=ballot)
+            self._placed[index] = replace(placed, ballot=ballot, voted=poses[row])
+        return far
+
+    def _moved(self, poses: Floats, samples: Samples, origins: Floats, faces: WallFaces) -> Ints:
+        """The views, by row, that settled elsewhere than they voted, or whose corners lie a millimetre off by now."""
+        everyone = self._in_order()
+        voted = np.concatenate([placed.ballot.free[placed.surfaces.corner] for _, placed in everyone])
+        corners = onto_faces(samples.points, origins[samples.view], faces.label, faces)
+        off = np.abs(corners - self.settings.cell * voted).max(axis=1) > VOTED
+        moved = np.any(np.array([placed.voted for _, placed in everyone]) != poses, axis=1)
+        moved[samples.view[off]] = True
+        return np.flatnonzero(moved)
 
     def _samples(self) -> Samples:
         """All measured corners in the frames of their views, view by view in the order of their indices."""

@@ -3,6 +3,7 @@
 scan           what the head saw in one turn, with the facts of its sensor
 sensors/       what sonar, infrared, lidar and time-of-flight would read in a given world
 fusion         sonar and infrared combined by three rules: opening undoes the beam, redrawing opens the doors
+mirrors        smooth walls, heard from their feet alone; past them nothing is known beyond their lines
 room_corners   square corners the beam cannot see into, inferred; half_beam tells how wide it is
 range_arcs     what a region of constant depth says of the wall behind it
 door_edges     jambs tracked over scans

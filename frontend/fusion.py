@@ -3,13 +3,14 @@
 A scan without infrared, or without a beam to undo, passes through the same steps and keeps its ranges.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frontend.infrared_edges import InfraredEdge, Opening, infrared_edges, pair_edges
+from frontend.mirrors import MirrorSettings, beside_mirrors
 from frontend.opening import smeared, undo_beam
 from frontend.redrawing import gap_core, opening_arc, why_closed
 from frontend.rigid_motion import transform
@@ -43,6 +44,7 @@ class FusionSettings:
     spike_height: float = 0.5  # metres; larger lets more lone readings (specular, crosstalk) pass as surface
     spike_readings: int = 2  # readings a lone run may have and still be rejected; larger rejects narrow true gaps
     door_depth: float = 0.15  # metres a jamb is nearer than the infrared's range; larger misses far doors
+    mirrors: MirrorSettings = field(default_factory=MirrorSettings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +105,7 @@ def fuse(scan: Scan, settings: FusionSettings) -> FusedScan:
         ranges, kinds = _redrawn(opening, ranges, kinds, scan)
     vouched = ranges
     ranges, kinds = _with_corners(ranges, kinds, scan)
+    ranges, vouched, kinds = _up_to_mirrors(ranges, vouched, kinds, (scan, settings.mirrors))
     spread = np.full(ranges.size, np.hypot(scan.sensor.range_noise, scan.sensor.quantum / np.sqrt(12)))
     moved = np.where(kinds == ReadingKind.MEASURED, ranges - scan.ranges, 0.0)
     return FusedScan(
@@ -214,6 +217,17 @@ def _with_corners(ranges: Floats, kinds: NDArray[np.uint8], scan: Scan) -> tuple
     for corner in room_corners(profile, np.isfinite(scan.ranges) & (kinds != ReadingKind.DOOR_ARC), scan):
         ranges[corner.readings], kinds[corner.readings] = corner.ranges, ReadingKind.INFERRED
     return ranges, kinds
+
+
+def _up_to_mirrors(
+    ranges: Floats, vouched: Floats, kinds: NDArray[np.uint8], read: tuple[Scan, MirrorSettings]
+) -> tuple[Floats, Floats, NDArray[np.uint8]]:
+    """Ranges, what is vouched for, and kinds (n,) where smooth walls answer about their feet and mirror all else."""
+    beside, kinds = beside_mirrors(*read), kinds.copy()
+    kinds[(beside.farthest < ranges) | beside.bound] = ReadingKind.NO_RETURN
+    kinds[beside.wall] = ReadingKind.MEASURED
+    ranges = np.where(beside.wall, beside.farthest, np.minimum(ranges, beside.farthest))
+    return ranges, np.minimum(vouched, beside.farthest), kinds
 
 
 def _jambs(openings: list[Opening], ranges: Floats, scan: Scan) -> Floats:
