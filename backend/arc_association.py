@@ -121,7 +121,9 @@ def _compared(
     if one.wall:
         seen, slope, along = seen_wall(pose, there)
         measured, variances = arcs.as_wall(arc)
-        if along + arcs.starts[arc] > one.stop + settings.apart or along + arcs.stops[arc] < one.start - settings.apart:
+        # What may be an edge as well is a wall only where a wall was seen: by its end it would be taken for one.
+        start, stop = (arcs.starts[arc], arcs.stops[arc]) if arcs.firm[arc] else (0.0, 0.0)
+        if along + start > one.stop + settings.apart or along + stop < one.start - settings.apart:
             return None
     else:
         seen, slope = seen_edge(pose, there)

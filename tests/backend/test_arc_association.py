@@ -1,5 +1,7 @@
 """Which landmark an arc is, and where that puts the robot."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from backend.arc_association import AssociationSettings, Belief, Known, associate
@@ -35,6 +37,14 @@ def test_what_nothing_explains_is_loose_and_a_wall_ends_where_it_was_seen_to_end
     placed = associate(before, [Known(True, 3, -1.0, 1.0, 0.0)], arcs_of((2.0, 0.0, 0.02)), AssociationSettings())
     assert placed.loose == (0,)
     assert np.allclose(placed.pose, 0)
+
+
+def test_what_may_be_an_edge_is_a_wall_only_where_the_wall_was_seen() -> None:
+    before, arcs = belief(0.02, (2.0, 5.6, 0.0)), arcs_of((2.0, 0.0, 0.02))
+    soft = replace(arcs, firm=np.zeros(1, bool))
+    wall = [Known(True, 3, -5.0, 5.0, 0.0)]  # it ends 0.6 m beside the foot, but a firm arc shows half a metre of it
+    assert associate(before, wall, arcs, AssociationSettings()).pairs == ((0, 0),)
+    assert associate(before, wall, soft, AssociationSettings()).loose == (0,)
 
 
 def test_an_edge_is_not_met_from_its_other_side() -> None:
