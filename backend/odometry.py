@@ -31,8 +31,9 @@ class OdometrySettings:
     gap_seconds: float = 5.0  # without a scan that are a gap; larger believes the wheels over longer pauses
     gap_intervals: float = 10.0  # usual intervals that are a gap, if that is longer; larger does the same
     fastest: float = 5.0  # metres per second that wheels may claim; larger believes wilder claims
-    lost_metres: float = 0.5  # doubt added to a move that no wheels tell; larger relies on registration alone
+    lost_metres: float = 0.5  # doubt of a move that no wheels tell, before any was seen; larger trusts registration
     lost_radians: float = 0.3
+    remembered: int = 30  # newest moves that say how far the next may go without wheels; larger forgets more slowly
     slips: int = 3  # in a row until the wheels are no longer asked; larger asks broken wheels longer
     slip_gate: float = 16.3  # squared Mahalanobis distance (χ², 3 degrees of freedom, 0.1 %); larger calls less a slip
 
@@ -57,6 +58,8 @@ class Odometry:
         self._intervals: deque[float] = deque(maxlen=100)
         self._slips = 0  # in a row
         self._speed = np.zeros(3)  # of the last registered move, per second
+        self._missed = 0  # moves since that one
+        self._surprises: deque[Floats] = deque(maxlen=settings.remembered)  # (2, 3): moves, and their changes
 
     @property
     def calibration(self) -> Floats:
@@ -67,6 +70,11 @@ class Odometry:
     def calibration_spread(self) -> Floats:
         """(5,) standard deviations of the calibration."""
         return np.array(np.sqrt(np.diag(self._filter.P)))
+
+    @property
+    def broken(self) -> bool:
+        """Whether the wheels were wrong so often in a row that they are not asked."""
+        return self._slips >= self.settings.slips
 
     def predict(self, wheels: Floats) -> Move:
         """The move to expect when the wheels claim the relative pose `wheels` (3,)."""
@@ -84,17 +92,33 @@ class Odometry:
         if seconds > max(settings.gap_seconds, settings.gap_intervals * usual):
             doubted = Move(expected.pose, expected.covariance + self._lost)
             return doubted, f"{seconds:.1f} s without a scan, usually {usual:.2f} s"
-        return (self.steady(seconds) if self._slips >= settings.slips else expected), None
+        return (self.steady(seconds) if self.broken else expected), None
 
     def steady(self, seconds: float) -> Move:
-        """The move to expect without wheels: on as before."""
-        return Move(np.asarray(self._speed * max(seconds, 0.0)), self._lost)
+        """The move to expect without wheels: on as before, or none, whichever foretold the newest moves better.
+
+        The doubt is how far that was off, as a quadratic mean, or more: a robot that only turned may drive on.
+        """
+        settings = self.settings
+        sizes = np.array([[_size(move) for move in pair] for pair in self._surprises or [np.zeros((2, 3))]])
+        # A switch between driving and turning is a surprise for both: what usually holds decides.
+        of_moves, of_changes = np.median(sizes, axis=0) @ (1 / settings.lost_metres, 1 / settings.lost_radians)
+        steady = bool(of_changes <= of_moves)
+        metres, radians = map(float, np.sqrt(np.mean(sizes[:, int(steady)] ** 2, axis=0)))
+        metres, radians = max(metres, settings.lost_metres), max(radians, settings.lost_radians)
+        lost = 1 + self._missed
+        expected = self._speed * max(seconds, 0.0) if steady and not self._missed else np.zeros(3)
+        return Move(expected, np.diag([lost * metres, lost * metres, lost * radians]) ** 2)
+
+    def lose(self) -> None:
+        """The last move is not known: the next one begins nobody knows where."""
+        self._missed += 1
 
     @property
     def _lost(self) -> Floats:
         return np.diag([self.settings.lost_metres, self.settings.lost_metres, self.settings.lost_radians]) ** 2
 
-    def learn(self, wheels: Floats, registered: Move, seconds: float = np.inf) -> float:
+    def learn(self, wheels: Floats, registered: Move, seconds: float = 1.0) -> float:
         """Take in a registered move in so many seconds; the squared Mahalanobis distance from what the wheels claim.
 
         Over `slip_gate` it taught nothing of the wheels.
@@ -104,8 +128,15 @@ class Odometry:
         residual[2] = np.arctan2(np.sin(residual[2]), np.cos(residual[2]))
         noise = self._noise(wheels) + registered.covariance
         distance = float(residual @ np.linalg.solve(jacobian @ self._filter.P @ jacobian.T + noise, residual))
+        if not self._missed:
+            self._surprises.append(np.array([registered.pose, registered.pose - self._speed * seconds]))
+        self._missed = 0
         self._speed = registered.pose / max(seconds, 1e-3)
-        self._slips = 0 if distance <= self.settings.slip_gate else self._slips + 1
+        if distance > self.settings.slip_gate:
+            self._slips += 1
+        elif np.hypot(*wheels[:2]) > self.settings.least_distance or abs(wheels[2]) > self.settings.least_turn:
+            # Only wheels that claim a move, and rightly, work: those that are stuck are right about a standing robot.
+            self._slips = 0
         if distance <= self.settings.slip_gate:
             measured = residual[:, None] + jacobian @ self._filter.x
             self._filter.update(measured, R=noise, H=jacobian)
@@ -135,6 +166,11 @@ class Odometry:
         distance = settings.distance_noise * way + settings.least_distance
         turn = settings.turn_noise * abs(wheels[2]) + settings.turn_per_metre * way + settings.least_turn
         return np.diag([distance, distance, turn]) ** 2
+
+
+def _size(move: Floats) -> tuple[float, float]:
+    """Metres and radians of a move (3,)."""
+    return float(np.hypot(*move[:2])), abs(float(move[2]))
 
 
 def _rotation(angle: float) -> Floats:

@@ -119,7 +119,9 @@ class Mapper:
         settings = self.settings.tracking
         recent = [keyframe.faces for keyframe in self._graph.last(settings.recent)]
         placed = self.logbook.answer(lambda: track(percept, last, move, recent, settings))
-        if placed.astray is not None:
+        if odometry.broken:
+            self._wheels.slip(index)
+        elif placed.refused is not None:
             # It may be the wheels that are wrong.
             steady = odometry.steady(seconds)
             again = self.logbook.answer(lambda: track(percept, last, steady, recent, settings))
@@ -130,6 +132,7 @@ class Mapper:
             self._wheels.slip(index)
         if placed.refused is not None:
             self._graph.refuse("registration", (index,), placed.refused)
+            odometry.lose()
         elif gap is None:
             slipped = self._wheels.learn(wheels, between(last, placed.pose), placed, seconds)
             if slipped is not None:

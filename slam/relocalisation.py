@@ -25,11 +25,12 @@ class RelocalisationSettings:
 
     search: SearchSettings = field(default_factory=lambda: SearchSettings(cell=0.1, blur=0.12, levels=7))
     matching: MatchingSettings = field(default_factory=MatchingSettings)
-    score: float = 0.5  # of the search; larger refuses more
+    score: float = 0.55  # of the search; larger refuses more
+    piece: int = 200  # keyframes of an old map searched at once; larger is slower and finds sooner
     spacing: float = 1.0  # metres between old keyframes whose knots are compared; larger is faster and misses more
-    compared: int = 40  # of them at most, others the next time; larger is slower and misses less
+    compared: int = 20  # of them at most, others the next time; larger is slower and misses less
     proposals: int = 3  # constellations verified, the largest first; larger is slower and misses less
-    thinned: float = 0.2  # metres between points that are searched with; larger is faster and coarser
+    thinned: float = 0.4  # metres between points that are searched with; larger is faster and coarser
     reach: float = 12.0  # metres of the newest submap around the robot
     ahead: float = 1.5  # metres before the robot where views are compared, as for loops
 

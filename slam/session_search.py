@@ -1,5 +1,6 @@
 """The search for other sessions' places: where one is recognised twice, two frames become one."""
 
+from collections import Counter
 from functools import partial
 
 from frontend.registration import Alignment
@@ -22,7 +23,7 @@ class SessionSearch:
 
     def begin_session(self) -> None:
         """Nothing was looked for yet."""
-        self._vain = 0  # searches since a place was found
+        self._vain: Counter[tuple[int, int]] = Counter()  # searches in each piece of map since a place was found
         self._pause = 0  # searches to leave out
 
     def join_sessions(self) -> bool:
@@ -33,18 +34,26 @@ class SessionSearch:
         self._pause -= 1
         if self._pause >= 0:
             return False
-        # Looked for in vain, it is looked for less and less often; one map at a time keeps the time of a scan bounded.
-        others = graph.sessions.others(graph.sessions.newest)
-        root = others[self._vain % len(others)]
-        self._vain += 1
-        self._pause = self._vain // 10
-        old = [k for k, keyframe in enumerate(graph.keyframes) if graph.sessions.root(keyframe.session) == root]
+        # Looked for in vain, it is looked for less and less often; a piece of map at a time bounds the time of a scan.
+        pieces = self._pieces()
+        piece = max(pieces, key=lambda one: len(pieces[one]) / (1 + self._vain[one]))
+        self._vain[piece] += 1
+        self._pause = 1 + self._vain.total() // 10
+        old = pieces[piece]
         tried = self._logbook.answer(partial(self._tried, old))
         scans = (graph.keyframes[old[tried.fixed]].scan, graph.keyframes[-1].scan)
         if isinstance(tried.found, str):
             graph.refuse("place", scans, tried.found)
             return False
         return self._confirmed(old[tried.fixed], tried.found, scans)
+
+    def _pieces(self) -> dict[tuple[int, int], list[int]]:
+        """The keyframes of other frames than the newest one's, by root and place in its map, at most `piece` each."""
+        graph, size = self._graph, self.settings.relocalisation.piece
+        found: dict[int, list[int]] = {root: [] for root in graph.sessions.others(graph.sessions.newest)}
+        for number, keyframe in enumerate(graph.keyframes):
+            found.get(graph.sessions.root(keyframe.session), []).append(number)
+        return {(root, k): old[k : k + size] for root, old in found.items() for k in range(0, len(old), size)}
 
     def _tried(self, old: list[int]) -> Tried:
         settings, places = self.settings, [self._graph.keyframes[k] for k in old]

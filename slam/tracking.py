@@ -22,6 +22,7 @@ class TrackingSettings:
 
     registration: RegistrationSettings = field(default_factory=RegistrationSettings)
     search: SearchSettings = field(default_factory=SearchSettings)
+    wide_search: SearchSettings = field(default_factory=lambda: SearchSettings(cell=0.1, blur=0.12))  # of wider windows
     visibility: VisibilitySettings = field(default_factory=VisibilitySettings)
     recent: int = 12  # keyframes in the local map; larger bridges more occlusion and drifts less, at more cost
     reach: float = 20.0  # metres of map around the robot; larger uses far walls
@@ -30,6 +31,7 @@ class TrackingSettings:
     poor: float = 0.4  # matched share under which, after that search, a scan is left to odometry; larger refuses more
     window_metres: float = 0.4  # of the wider search; larger finds worse guesses and mistakes more
     window_radians: float = 0.25
+    window_sigmas: float = 3.0  # of the guess's doubt that it covers, if that is wider; larger searches longer
     least_faces: int = 8  # surface points a scan needs to be registered at all
     astray: float = 0.5  # confirmed share of the visible map under which a scan is of another place; larger doubts more
     pierced: float = (
@@ -86,17 +88,20 @@ def track(percept: Percept, last: Floats, move: Move, recent: list[Faces], setti
         return Placed(guess, by_wheels, 0.0, few)
     local_map = LocalMap.of(faces)
     prior = Guess(guess, np.asarray(np.linalg.inv(doubt), np.float64))
+    window = _window(doubt, settings)
+    lost = window[0] > settings.window_metres or window[1] > settings.window_radians
     found = register(percept.surface, local_map, prior, settings.registration)
     seen = look(percept.fused, found.pose_in_fixed, faces, settings.visibility)
-    if _doubtful(found, seen, settings):
-        found, seen = _wider(percept, local_map, prior, (found, seen), settings)
+    if lost or _doubtful(found, seen, settings):
+        found, seen = _wider(percept, local_map, prior, (found, seen), window, settings)
+    astray = _astray(percept, found.matched, seen, settings)
     if found.matched < settings.poor:
         reason = (
             f"only {found.matched:.0%} of {len(percept.surface.points)} surface points lie on the map "
             f"({settings.poor:.0%} needed)"
         )
-        return Placed(guess, by_wheels, found.matched, reason, _astray(percept, found.matched, seen, settings))
-    astray = _astray(percept, found.matched, seen, settings)
+        # Where not even the wheels know, nobody does.
+        return Placed(guess, by_wheels, found.matched, reason, astray or (reason if lost else None))
     if astray is not None:
         return Placed(guess, by_wheels, found.matched, astray, astray)
     both, alone = (
@@ -126,17 +131,25 @@ def _doubtful(found: Alignment, seen: Visibility, settings: TrackingSettings) ->
     return slides or seen.confirmed < settings.good or found.matched < settings.poor
 
 
+def _window(doubt: Floats, settings: TrackingSettings) -> tuple[float, float]:
+    """Metres and radians around a guess of this covariance (3, 3) within which a scan is looked for."""
+    place, turn = settings.window_sigmas * np.sqrt([np.linalg.eigvalsh(doubt[:2, :2])[-1], doubt[2, 2]])
+    return max(float(place), settings.window_metres), min(max(float(turn), settings.window_radians), np.pi)
+
+
 def _wider(
     percept: Percept,
     local_map: LocalMap,
     prior: Guess,
     so_far: tuple[Alignment, Visibility],
+    window: tuple[float, float],
     settings: TrackingSettings,
 ) -> tuple[Alignment, Visibility]:
     """Search a window around the guess, and keep the better of both answers."""
-    grid = ScoreGrid.of(local_map.faces.points, settings.search)
-    window = (settings.window_metres, settings.window_radians)
-    best = grid.search(percept.surface.points, prior.pose, window, settings.poor)
+    search = settings.search if window[0] <= settings.window_metres else settings.wide_search
+    best = ScoreGrid.of(local_map.faces.points, search).search(
+        percept.surface.points, prior.pose, window, settings.poor
+    )
     if best is None:
         return so_far
     weak = Guess(prior.pose, prior.information * 0.05)

@@ -191,3 +191,33 @@ def test_wheels_that_stand_still_while_the_robot_goes_on_are_not_asked_again_unt
     np.testing.assert_allclose(odometry.expect(stuck, 0.5)[0].pose, went)
     odometry.learn(went, Move(went, REGISTERED), 0.5)
     np.testing.assert_allclose(odometry.expect(went, 0.5)[0].pose, odometry.predict(went).pose)
+
+
+def test_without_wheels_a_robot_that_drives_on_is_expected_to_and_one_that_starts_and_stops_is_not() -> None:
+    """The doubt covers what the moves of late would have been off."""
+    forward = np.array([0.3, 0.0, 0.0])
+    for moves, expected in (([forward] * 10, forward), ([forward, 0 * forward] * 5, 0 * forward)):
+        odometry = Odometry(SETTINGS)
+        for move in moves:
+            odometry.learn(np.zeros(3), Move(move, REGISTERED))
+        steady = odometry.steady(1.0)
+        np.testing.assert_allclose(steady.pose, expected, atol=1e-9)
+        assert np.sqrt(steady.covariance[0, 0]) >= SETTINGS.lost_metres
+
+
+def test_doubt_grows_with_every_move_that_nobody_saw() -> None:
+    odometry = Odometry(SETTINGS)
+    before = odometry.steady(1.0).covariance
+    odometry.lose()
+    np.testing.assert_allclose(odometry.steady(1.0).covariance, 4 * before)
+
+
+def test_stuck_wheels_are_not_believed_again_while_the_robot_stands() -> None:
+    odometry = Odometry(SETTINGS)
+    for _ in range(SETTINGS.slips):
+        odometry.learn(np.zeros(3), Move(np.array([0.5, 0.0, 0.0]), REGISTERED))
+    assert odometry.broken
+    odometry.learn(np.zeros(3), Move(np.zeros(3), REGISTERED))
+    assert odometry.broken
+    odometry.learn(np.array([0.3, 0.0, 0.0]), Move(np.array([0.3, 0.0, 0.0]), REGISTERED))
+    assert not odometry.broken

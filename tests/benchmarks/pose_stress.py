@@ -16,7 +16,7 @@ from backend.estimate import Estimate
 from frontend.local_map import Faces
 from frontend.registration import Alignment
 from frontend.rigid_motion import between, compose
-from frontend.scan import Floats, Integers, Scan
+from frontend.scan import Booleans, Floats, Integers, Scan
 from slam.loop_search import Verify
 from slam.loops import VerificationSettings, close_loop
 from slam.mapper import Mapper
@@ -76,13 +76,35 @@ class Run:
     def said(self) -> str:
         """How far it came, and what it left out."""
         placed, left = len(self.estimate.poses), int((~self.estimate.mapped).sum())
-        return f"{placed} of {len(self.scans)} scans in {self.seconds:.1f} s CPU, {left} of them not in the map"
+        said = f"{placed} of {len(self.scans)} scans in {self.seconds:.1f} s CPU, {left} of them not in the map"
+        if placed < len(self.scans) or not left:
+            return said
+        inside = Spread.of(errors_of(self, self.estimate.poses)[self.within])
+        told = f"mean {inside.mean:.4f} and median {inside.median:.4f} m"
+        return f"{said}; the {inside.count} relations within the map: {told}"
+
+    @property
+    def within(self) -> Booleans:
+        """Which of the relations (r,) lie between scans that stand in the map."""
+        times = np.array([scan.time for scan in self.scans])
+        after = np.clip(np.searchsorted(times, relations_of(self.path)[:, :2]), 1, len(times) - 1)
+        mapped = self.estimate.mapped
+        return np.asarray(np.all(mapped[after] & mapped[after - 1], axis=1))
 
 
 def error_of(run: Run, poses: Floats) -> float:
     """Mean translation error over the relations of other poses (n, 3) for a run's scans."""
-    relations = read_relations(run.path.with_suffix("").with_suffix(".relations"))
-    return Spread.of(relation_errors(track_of(run.path, run.scans, poses), relations)[0]).mean
+    return Spread.of(errors_of(run, poses)).mean
+
+
+def errors_of(run: Run, poses: Floats) -> Floats:
+    """Translation errors (r,) over the relations."""
+    return relation_errors(track_of(run.path, run.scans, poses), relations_of(run.path))[0]
+
+
+def relations_of(path: Path) -> Floats:
+    """The relations (r, 5) beside a log."""
+    return read_relations(path.with_suffix("").with_suffix(".relations"))
 
 
 def wheel_rows(undisturbed: Run) -> list[Row]:
