@@ -2,6 +2,7 @@
 
 import json
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -44,6 +45,20 @@ class Source:
     path: Path
     format_name: str | None
     further: tuple[Path, ...] = ()
+
+
+def folder_for(recordings: Sequence[Path]) -> Path:
+    """Where a map goes if nobody says: here, named after its first recording. Raises ResultError where others lie."""
+    first, *further = recordings
+    name = first.resolve().name
+    if first.is_file():
+        name = Path(name.removesuffix(".gz").removesuffix(".zip")).stem
+    folder = Path(f"{name}-and-{len(further)}-more-map" if further else f"{name}-map")
+    if (folder / REPORT).exists():
+        told = read_report(folder)["recording"]
+        if [told["path"], *told.get("further", ())] != [str(path.resolve()) for path in recordings]:
+            raise ResultError(f"{folder} is the map of {told['path']}, not to be lost: name another folder with --out")
+    return folder
 
 
 def write_result(folder: Path, merged: Merged, recording: Recording, settings: Settings) -> None:

@@ -32,7 +32,8 @@ def write_whole(path: Path, content: str | bytes) -> None:
 def whole_folder(folder: Path, mark: str = RESULT_MARK) -> Iterator[Path]:
     """An empty folder to fill; on success it takes the place of `folder`, on failure nothing is left of it.
 
-    Only a folder with the file `mark` gives way: whatever else lies in `folder` is not ours to delete.
+    Only a folder with the file `mark` gives way: whatever else lies in `folder` is not ours to delete. Raises
+    OutputError, also for what whoever fills the folder cannot write into it.
     """
     check_place(folder, mark)
     try:
@@ -40,14 +41,25 @@ def whole_folder(folder: Path, mark: str = RESULT_MARK) -> Iterator[Path]:
         hidden = Path(mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
     except OSError as reason:
         raise OutputError(f"{folder} cannot be made: {reason.strerror or reason}") from reason
+    gone = hidden.with_name(f"{hidden.name}.earlier")
     try:
         yield hidden
         hidden.chmod(0o755)
         if folder.exists():
-            shutil.rmtree(folder)
+            # Killed between the two names, the earlier run is still there under the hidden one.
+            folder.rename(gone)
         hidden.rename(folder)
+    except OSError as reason:
+        raise OutputError(f"{folder} cannot be written: {reason.strerror or reason}") from reason
+    except OutputError as reason:
+        # Nobody knows the hidden name, and nothing is left of it.
+        raise OutputError(str(reason).replace(str(hidden), str(folder))) from reason
     finally:
         shutil.rmtree(hidden, ignore_errors=True)
+        if folder.exists():
+            shutil.rmtree(gone, ignore_errors=True)
+        elif gone.exists():
+            gone.rename(folder)
 
 
 def check_place(folder: Path, mark: str = RESULT_MARK) -> None:

@@ -16,7 +16,7 @@ NOTHING = {
     "error": "none found",
 }  # by what a figure's name ends in
 
-out = Console(soft_wrap=True, highlight=False)
+out = Console(soft_wrap=True, highlight=False, markup=False)
 err = Console(stderr=True, soft_wrap=True, highlight=False, markup=False)
 
 

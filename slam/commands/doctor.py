@@ -3,7 +3,6 @@
 from typing import Annotated
 
 import typer
-from rich.markup import escape
 from rich.table import Table
 
 from slam import doctor as check_up
@@ -20,7 +19,7 @@ def doctor(
     table = Table("", "part", "finding", box=None)
     for finding in findings:
         mark = "ok" if finding.in_order else "missing" if finding.needed else "without"
-        table.add_row(mark, escape(finding.subject), escape(finding.says))
+        table.add_row(mark, finding.subject, finding.says)
     out.print(table)
     if any(finding.needed and not finding.in_order for finding in findings):
         raise typer.Exit(1)

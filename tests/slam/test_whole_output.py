@@ -1,5 +1,6 @@
 """Output appears whole or not at all, and never at the cost of files that are not ours."""
 
+from errno import ENOSPC
 from pathlib import Path
 
 import pytest
@@ -28,6 +29,23 @@ def test_an_earlier_result_gives_way_as_a_whole(tmp_path: Path) -> None:
     with whole_folder(tmp_path / "run") as folder:
         (folder / RESULT_MARK).write_text("new")
     assert [path.name for path in (tmp_path / "run").iterdir()] == [RESULT_MARK]
+
+
+def a_page_in_vain(wanted: Path) -> None:
+    with whole_folder(wanted) as hidden:
+        (hidden / "report.html").mkdir()
+        write_whole(hidden / "report.html", "")
+
+
+def test_a_full_disk_is_one_sentence_with_the_name_that_was_asked_for(tmp_path: Path) -> None:
+    wanted = tmp_path / "run"
+    with pytest.raises(OutputError, match=r"run cannot be written: No space left") as told, whole_folder(wanted):
+        raise OSError(ENOSPC, "No space left on device")
+    assert str(told.value).startswith(f"{wanted} cannot")
+    with pytest.raises(OutputError) as told:
+        a_page_in_vain(wanted)
+    assert str(told.value).startswith(f"{wanted / 'report.html'} cannot be written: ")
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_folder_with_other_files_is_not_touched(tmp_path: Path) -> None:
