@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from backend.ballots import ballot_of
 from backend.evidence import Ballot, EvidenceGrid
 from backend.grazing import up_to_mirrors, walls_of
+from backend.half_steps import by_half_steps
 from backend.map_reading import PlacedViews, ReadingSettings, read_map
 from backend.room_map import RoomMap
 from backend.samples import Samples
@@ -68,7 +69,7 @@ class Merger:
         """Let the view `index` vote from its pose (3,). Raises MergingError if it already did."""
         if index in self._placed:
             raise MergingError(f"view {index} is in the map already: move it instead")
-        surfaces = surfaces_of(view, self.settings.piece, self.settings.finest)
+        surfaces = surfaces_of(by_half_steps(view), self.settings.piece, self.settings.finest)
         ballot = self._ballot(surfaces, place(surfaces.ring, pose), place(view.origin[None], pose)[0])
         self._evidence.cast(ballot, 1)
         given = np.asarray(pose, dtype=np.float64)

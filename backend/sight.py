@@ -60,7 +60,7 @@ def _fans(edges: Floats, view: Ints, origins: Floats) -> tuple[Ints, Floats, Flo
     start = angle[np.searchsorted(view, view), 0]  # of the view's first edge
     width = np.mod(angle[:, 1] - angle[:, 0], 2 * np.pi)
     bearing = np.mod(angle[:, 0] - start, 2 * np.pi)
-    turning = np.flatnonzero(width < np.pi)
+    turning = np.flatnonzero((width > 1e-9) & (width < np.pi))
     order = turning[np.lexsort((bearing[turning], view[turning]))]
     return view[order], (bearing + start)[order], width[order], edges[order]
 
