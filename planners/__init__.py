@@ -5,6 +5,7 @@ Generalized cones, `generalized_cones`: `freeways` (facing walls, spines), `slic
 (legal headings), `spine_graph`, `spine_search`, `way_in`, `entrances`, `chains`, `headings`, `lost_headings`,
 `cone_outlines`.
 Configuration space, `configuration_space`: `box_space` with `cells` (labels), `subdivision` (boxes), `channels`
-(search); `disc_space` with `visibility` (the exact roadmap); `explain` (the gap that is too narrow).
+(search), `guide` (what leads it); `disc_space` with `visibility` (the exact roadmap); `explain` (the gap that is too
+narrow).
 Shared: `motion` (straight motions proved free), `shortcut`, `state_queue`, `insertion`, `compiled`.
 """

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planners.cells import EMPTY, FULL, MIXED, SMALL, SPLIT, Walls
-from planners.channels import EXHAUSTED, FOUND, Front, Query, front_for, refine, search
+from planners.channels import EVERYWHERE, EXHAUSTED, FOUND, Front, Query, forget, front_for, refine, search
+from planners.guide import guide_to
 from planners.mooring import moored
 from planners.motion import Course, clearance_of, course_of
 from planners.outline import Outline, outline_of
@@ -19,6 +20,7 @@ from planners.robot import CHORDS, Robot
 from planners.shortcut import shortened
 from planners.state_queue import Queue, queue_for
 from planners.subdivision import CELLS, Tree, plant
+from planners.visibility import parted
 from planners.world import World, outside_arcs
 
 Floats = NDArray[np.float64]
@@ -30,7 +32,7 @@ class ConfigurationSpaceSettings:
 
     clearance: float = 0.0  # metres kept from every obstacle; larger is safer, longer, and passes fewer doors
     resolution: float = 0.02  # metres; smaller finds paths of less clearance (all above 2.42 of it) and takes longer
-    mixed_cost: float = 2.0  # per metre through a box not known; larger settles for longer detours sooner
+    mixed_cost: float = 1.4  # per metre through a box not known; larger settles for longer detours sooner
     turn_cost: float = 0.1  # metres per radian; larger avoids turning
     levels: int = 5  # halvings between two searches; larger searches less often and cuts more
     most_boxes: int = 400_000  # larger goes on longer, at 1 kB a box, before answering "undecided"
@@ -72,6 +74,10 @@ def prepare_boxes(world: World, robot: Robot, settings: ConfigurationSpaceSettin
 
 def query_boxes(space: BoxSpace, start: Floats, goal: Floats) -> Answer:
     """A path between poses (3,) with headings in [0, 2π) or nan for any; or the proof that there is none."""
+    room = space.robot.inner + space.settings.clearance
+    if parted(space.world, room, start[:2], goal[:2]):
+        reason = f"places with {room:.4g} m of room around them, as every heading needs, do not join start and goal"
+        return Answer("no path", reason, cells=_cells(space.tree))
     answer = _searched(space, start, goal)
     if answer.kind != "undecided":
         return answer
@@ -102,14 +108,14 @@ def _kept(space: BoxSpace) -> float:
 
 def _searched(space: BoxSpace, start: Floats, goal: Floats) -> Answer:
     asked, settings = _asked(space, start, goal), space.settings
-    space.front.seen[:], space.front.closed[:] = 0, 0
+    forget(space.front)
     status, last, searches = refine(space.tree, space.outlines, space.walls, asked, space.front, space.queue)
     if status == FOUND:
         return _found(space, _poses(space, asked, last))
     if status == EXHAUSTED:
         return _undecided(space, f"all {settings.most_boxes} boxes are used up; a coarser resolution needs fewer")
     asked.factors[SMALL] = 1.0
-    if search(space.tree, asked, space.front, space.queue, searches + 1) >= 0:
+    if search(space.tree, asked, space.front, space.queue, searches + 1, EVERYWHERE)[0] >= 0:
         return _undecided(space, f"only partly free boxes of {settings.resolution:g} m join start and goal")
     full = int((space.tree.labels[: space.tree.used[CELLS]] == FULL).sum())
     return Answer("no path", f"{full} boxes that collide throughout separate start and goal", cells=_cells(space.tree))
@@ -135,7 +141,8 @@ def _asked(space: BoxSpace, start: Floats, goal: Floats) -> Query:
     sheets, levels, turn_cost = space.robot.symmetry, space.settings.levels, space.settings.turn_cost
     turned = np.array([start, goal])
     turned[:, 2] %= 2 * np.pi
-    return Query(turned[0], turned[1], sheets, 2 * np.pi / sheets, factors, turn_cost, levels)
+    guide = guide_to(space.world, space.robot.inner + space.settings.clearance, goal)
+    return Query(turned[0], turned[1], sheets, 2 * np.pi / sheets, factors, turn_cost, levels, guide)
 
 
 def _poses(space: BoxSpace, asked: Query, last: int) -> Floats:

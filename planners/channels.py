@@ -1,8 +1,10 @@
 """The search of configuration space: best channels of EMPTY and MIXED boxes, refined where they are MIXED.
 
 A* runs over states (box, sheet): a robot that looks the same at s headings needs boxes over one s-th of the circle
-only, and the sheet says which s-th. A channel whose boxes are all EMPTY is a path; when no channel is left without
-the boxes that are too small to cut, the search is over.
+only, and the sheet says which s-th. It is led by the way that a disc inside the robot has left, so that boxes not yet
+cut promise no short cuts through walls. A channel whose boxes are all EMPTY is a path; one that is not is cut and
+searched anew by itself, with the boxes beside it, for as long as this is cheaper than to search everywhere. When no
+channel is left without the boxes that are too small to cut, the search is over.
 """
 
 from typing import NamedTuple
@@ -12,6 +14,7 @@ from numpy.typing import NDArray
 
 from planners.cells import EMPTY, MIXED, Walls
 from planners.compiled import compiled
+from planners.guide import Guide, left
 from planners.outline import Outline
 from planners.state_queue import Queue, pop, push
 from planners.subdivision import CELLS, Tree, cut, has_room
@@ -19,14 +22,15 @@ from planners.subdivision import CELLS, Tree, cut, has_room
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
-FOUND, BLOCKED, EXHAUSTED = 0, 1, 2  # an EMPTY channel; no channel; no rows left
+FOUND, BLOCKED, EXHAUSTED, CUT = 0, 1, 2, 3  # an EMPTY channel; no channel; no rows left; go on
+EVERYWHERE = 0  # the number that no channel has
 
 
 class Query(NamedTuple):
     """start, goal (3,), headings in [0, 2π) or nan for any. sheets: s. period: 2π/s.
 
     factors (5,): what a metre through a box of each label costs, inf where it must not go. turn_cost: metres per
-    radian. levels: how often the MIXED boxes of a channel are halved before the next search.
+    radian. levels: how often the MIXED boxes of a channel are halved before the next search. guide: to the goal.
     """
 
     start: Floats
@@ -36,23 +40,33 @@ class Query(NamedTuple):
     factors: Floats
     turn_cost: float
     levels: int
+    guide: Guide
 
 
 class Front(NamedTuple):
-    """A*'s rows per state: cost so far, entry point (3,) with the heading inside the box, parent, search stamps."""
+    """A*'s rows per state: cost so far, entry point (3,) with the heading inside the box, parent, search stamps; and
+    per box the last channel (n,) that it lay beside."""
 
     cost: Floats
     entry: Floats
     parent: Ints
     seen: Ints
     closed: Ints
+    channel: Ints
 
 
 def front_for(tree: Tree, sheets: int) -> Front:
     """Rows for every state of `tree`."""
     states = tree.labels.size * sheets
     parent, seen, closed = np.empty(states, np.int32), np.zeros(states, np.int32), np.zeros(states, np.int32)
-    return Front(np.empty(states), np.empty((states, 3)), parent, seen, closed)
+    channel = np.zeros(tree.labels.size, np.int32)
+    return Front(np.empty(states), np.empty((states, 3)), parent, seen, closed, channel)
+
+
+def forget(front: Front) -> None:
+    """Make the rows ready for another query."""
+    for rows in (front.seen, front.closed, front.channel):
+        rows[:] = 0
 
 
 @compiled
@@ -91,10 +105,17 @@ def _step(tree: Tree, link: int, way: Floats, out: Floats) -> None:
 
 
 @compiled
-def _begin(tree: Tree, query: Query, front: Front, queue: Queue, stamp: int) -> None:
+def _within(tree: Tree, query: Query, front: Front, cell: int, channel: int) -> bool:
+    """Whether a search of one channel, or of EVERYWHERE, may go through a box."""
+    here = channel == EVERYWHERE or channel == front.channel[cell]
+    return bool(here and np.isfinite(query.factors[tree.labels[cell]]))
+
+
+@compiled
+def _begin(tree: Tree, query: Query, front: Front, queue: Queue, stamp: int, channel: int) -> None:
     """Queue the states that hold the start."""
     for cell in range(tree.used[CELLS]):
-        if np.isfinite(query.factors[tree.labels[cell]]) and _holds(tree, cell, query.start, query.period):
+        if _within(tree, query, front, cell, channel) and _holds(tree, cell, query.start, query.period):
             for sheet in range(query.sheets):
                 if _on_sheet(query.start, sheet, query):
                     state = cell * query.sheets + sheet
@@ -107,59 +128,98 @@ def _begin(tree: Tree, query: Query, front: Front, queue: Queue, stamp: int) -> 
 
 
 @compiled
-def _expand(tree: Tree, query: Query, front: Front, queue: Queue, state: int) -> None:
-    """Queue the neighbours of a state, or move them forward."""
+def _expand(tree: Tree, query: Query, front: Front, queue: Queue, state: int, channel: int) -> None:
+    """Queue the neighbours of a state, or move them forward; no way costs less than the guide has come nearer."""
     cell, sheet, stamp = state // query.sheets, state % query.sheets, front.seen[state]
     out, way = np.empty(3), np.empty((2, 3))
     for k in range(3):
         way[0, k], way[1, k] = front.entry[state, k], query.goal[k]
-    link = tree.first[cell]
+    link, here = tree.first[cell], left(query.guide, way[0])
     while link >= 0:
         target, face = tree.links[link, 0], tree.links[link, 4]
         reached = target * query.sheets + (sheet + (face == 7) - (face == 6)) % query.sheets
-        if front.closed[reached] != stamp and np.isfinite(query.factors[tree.labels[target]]):
+        if front.closed[reached] != stamp and _within(tree, query, front, target, channel):
             _step(tree, link, way, out)
             turn = abs(out[2] - way[0, 2])
             if face >= 6:
                 turn = abs(turn - query.period)
             step = np.hypot(out[0] - way[0, 0], out[1] - way[0, 1]) + query.turn_cost * turn
-            cost = front.cost[state] + step * query.factors[tree.labels[cell]]
+            there = left(query.guide, out)
+            cost = front.cost[state] + max(step * query.factors[tree.labels[cell]], here - there)
             if front.seen[reached] != stamp or cost < front.cost[reached]:
                 front.cost[reached], front.parent[reached], front.seen[reached] = cost, state, stamp
                 for k in range(3):
                     front.entry[reached, k] = out[k]
-                push(queue, reached, cost + np.hypot(out[0] - query.goal[0], out[1] - query.goal[1]))
+                push(queue, reached, cost + there)
         link = tree.links[link, 2]
 
 
 @compiled
-def search(tree: Tree, query: Query, front: Front, queue: Queue, stamp: int) -> int:
-    """The last state of the best channel, or −1; closed states carry `stamp`."""
-    queue.size[0] = 0
-    _begin(tree, query, front, queue, stamp)
+def search(tree: Tree, query: Query, front: Front, queue: Queue, stamp: int, channel: int) -> tuple[int, int]:
+    """The last state of the best channel, or −1, and how many states were closed; they carry `stamp`.
+
+    channel: the number of the channel to which the search keeps, or EVERYWHERE.
+    """
+    queue.size[0], closed = 0, 0
+    _begin(tree, query, front, queue, stamp, channel)
     while queue.size[0] > 0:
         state = pop(queue)
         front.closed[state] = stamp
+        closed += 1
         cell = state // query.sheets
         if _on_sheet(query.goal, state % query.sheets, query) and _holds(tree, cell, query.goal, query.period):
-            return state
-        _expand(tree, query, front, queue, state)
-    return -1
+            return state, closed
+        _expand(tree, query, front, queue, state, channel)
+    return -1, closed
 
 
 @compiled
-def _cut_deep(tree: Tree, outer: Outline, core: Outline, walls: Walls, cell: int, levels: int) -> bool:
-    """Halve a box `levels` times over where it stays MIXED; whether the rows sufficed."""
+def _cut_deep(
+    tree: Tree, outlines: tuple[Outline, Outline], walls: Walls, query: Query, front: Front, cell: int
+) -> bool:
+    """Halve a box as often as the query says where it stays MIXED; whether the rows sufficed."""
     begin, end = cell, cell + 1
-    for _ in range(levels):
+    for _ in range(query.levels):
         following = tree.used[CELLS]
         for each in range(begin, end):
             if tree.labels[each] == MIXED:
                 if not has_room(tree, each):
                     return False
-                cut(tree, outer, core, walls, each)
+                cut(tree, outlines[0], outlines[1], walls, each)
+                for half in range(tree.used[CELLS] - 2, tree.used[CELLS]):
+                    front.channel[half] = front.channel[each]
         begin, end = following, tree.used[CELLS]
     return True
+
+
+@compiled
+def _mark(tree: Tree, query: Query, front: Front, last: int, channel: int) -> None:
+    """Number the boxes of the channel that ends with state `last`, and those beside it."""
+    state = last
+    while state >= 0:
+        cell = state // query.sheets
+        front.channel[cell] = channel
+        link = tree.first[cell]
+        while link >= 0:
+            front.channel[tree.links[link, 0]] = channel
+            link = tree.links[link, 2]
+        state = front.parent[state]
+
+
+@compiled
+def _cut_along(
+    tree: Tree, outlines: tuple[Outline, Outline], walls: Walls, query: Query, front: Front, last: int
+) -> int:
+    """Cut the MIXED boxes of the channel that ends with state `last`; FOUND if there are none."""
+    state, status = last, FOUND
+    while state >= 0:
+        cell = state // query.sheets
+        if tree.labels[cell] != EMPTY:
+            status = CUT
+            if tree.labels[cell] == MIXED and not _cut_deep(tree, outlines, walls, query, front, cell):
+                return EXHAUSTED
+        state = front.parent[state]
+    return status
 
 
 @compiled
@@ -170,21 +230,20 @@ def refine(
 
     outlines: the robot's outer outline, by which boxes are EMPTY, and the core outline, by which they are FULL.
     """
-    stamp = 0
+    stamp, channel = 0, EVERYWHERE
     while True:
-        stamp += 1
-        last = search(tree, query, front, queue, stamp)
+        stamp, channel = stamp + 1, channel + 1
+        last, spare = search(tree, query, front, queue, stamp, EVERYWHERE)
         if last < 0:
             return BLOCKED, -1, stamp
-        state, certain = last, True
-        while state >= 0:
-            cell = state // query.sheets
-            if tree.labels[cell] != EMPTY:
-                certain = False
-                if tree.labels[cell] == MIXED and not _cut_deep(
-                    tree, outlines[0], outlines[1], walls, cell, query.levels
-                ):
-                    return EXHAUSTED, -1, stamp
-            state = front.parent[state]
-        if certain:
-            return FOUND, last, stamp
+        _mark(tree, query, front, last, channel)
+        status = _cut_along(tree, outlines, walls, query, front, last)
+        # Searching along the channel may cost as much again as searching everywhere, so at most half is in vain.
+        while status == CUT and last >= 0 and spare > 0:
+            stamp += 1
+            last, closed = search(tree, query, front, queue, stamp, channel)
+            spare -= closed
+            if last >= 0:
+                status = _cut_along(tree, outlines, walls, query, front, last)
+        if status != CUT:
+            return status, last, stamp

@@ -3,14 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from planners.box_space import ConfigurationSpaceSettings
 from planners.motion import Course, clearance_of, course_of
 from planners.path import Answer, Path
 from planners.robot import Robot
-from planners.visibility import Roadmap, eroded, roadmap_of, shortest
+from planners.visibility import Roadmap, parted, roadmap_of, shortest
 from planners.world import World
 
 Floats = NDArray[np.float64]
@@ -42,17 +41,10 @@ def query_disc(space: DiscSpace, start: Floats, goal: Floats) -> Answer:
         clearance = max(clearance_of(space.course, poses, 1e-3 * space.radius), space.settings.clearance)
         certificate = "every piece keeps more than the radius from every wall"
         return Answer("path", f"the shortest path, by {len(points) - 2} corners", Path(poses, clearance, certificate))
-    if _joined(space, start[:2], goal[:2]):
+    if not parted(space.world, space.radius, start[:2], goal[:2]):
         reason = f"a passage is within 0.3 % of the radius of {space.radius:g} m: too close to call"
         return Answer("undecided", reason)
     return Answer("no path", f"places with {space.radius:g} m of room around them do not join start and goal")
-
-
-def _joined(space: DiscSpace, start: Floats, goal: Floats) -> bool:
-    """Whether the two lie in one component even among hulls that are a little too small: if not, there is no path."""
-    points = shapely.points([start, goal])
-    parts = eroded(space.world.free, space.radius - 8 * space.world.grid)
-    return any(shapely.covers(part.buffer(8 * space.world.grid), points).all() for part in parts)
 
 
 def _headed(points: Floats, first: float, last: float) -> Floats:

@@ -67,6 +67,12 @@ class Robot:
         return float(np.linalg.norm(self.corners, axis=1).max()) + self.radius
 
     @cached_property
+    def inner(self) -> float:
+        """Radius of the largest disc about the reference point within one of the parts; 0 if the point is in none."""
+        rims = [part for part in self.parts if len(part) > 2 and shapely.contains_xy(Polygon(part), 0, 0)]
+        return self.radius + max((Polygon(part).exterior.distance(shapely.Point(0, 0)) for part in rims), default=0.0)
+
+    @cached_property
     def width(self) -> float:
         """The narrowest straight passage that the outline fits through."""
         if self.is_disc:

@@ -56,6 +56,13 @@ def eroded(free: Polygon | MultiPolygon, distance: float) -> list[Polygon]:
     return [shapely.orient_polygons(part) for part in parts if not part.is_empty]
 
 
+def parted(world: World, radius: float, start: Floats, goal: Floats) -> bool:
+    """Whether no disc of that radius comes from one point (2,) to the other, not even among hulls a bit too small."""
+    points = shapely.points([start, goal])
+    parts = eroded(world.free, radius - 8 * world.grid)
+    return not any(shapely.covers(part.buffer(8 * world.grid), points).all() for part in parts)
+
+
 def _reflex_corners(parts: list[Polygon]) -> Floats:
     """Corners around which a way can bend, with both neighbours: (n, 6)."""
     rows = [np.empty((0, 6))]

@@ -36,6 +36,13 @@ def test_a_door_narrower_than_the_robot_is_proved_shut_and_the_gap_named() -> No
     assert "7.9 m wide; needed are 8 m" in answer.reason
 
 
+def test_walls_that_part_a_large_world_are_proved_at_once() -> None:
+    world = World.from_obstacles(box(0, 0, 1000, 1000), [box(499, 0, 501, 600), box(499, 600, 501, 1000)])
+    answer = plan(world, LONG, [100, 100, None], [900, 900, None], replace(FINE, most_boxes=100))
+    assert answer.kind == "no path"
+    assert "walls part them altogether" in answer.reason
+
+
 def test_the_corner_turns_at_its_critical_width_to_three_resolutions() -> None:
     width = CRITICAL_CORNER + 3 * FINE.resolution
     assert plan(corner(width), LONG, *corner_query(width), FINE).kind == "path"

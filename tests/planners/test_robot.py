@@ -47,3 +47,9 @@ def test_a_grown_robot_holds_the_old_one_and_the_chords_can_be_put_outside() -> 
     outer = Robot.rectangle(2, 1).grown(float(outside_arcs(0.5, CHORDS)))
     exact = shapely.box(-1, -0.5, 1, 0.5).buffer(0.5, quad_segs=256)
     assert shapely.Polygon(outer.parts[0]).contains(exact)
+
+
+def test_the_disc_inside_is_as_wide_as_the_sides_leave_it_and_none_without_the_reference_point() -> None:
+    assert Robot.rectangle(20, 8).inner == pytest.approx(4)
+    assert Robot.disc(0.3).inner == pytest.approx(0.3)
+    assert Robot.polygons(ELL + 10).inner == 0
