@@ -5,6 +5,6 @@ What a view says: `view`, `surfaces`, `samples`, `ballots`, `sight`.
 Merging: `polygon_merging` (the verb), `settling`, `cell_lines`, `wall_faces`, `snapping`, `evidence`, `far_ground`,
 `grazing`, `contours`.
 The map: `room_map` (the noun), `map_reading`, `provenance`, `leak_repair`, `leak_alarm`, `hidden_objects`, `occluders`,
-`doors`, `decisions`.
+`doors`, `door_walls`, `decisions`.
 From the map on: `next_view`, `thin_rectangles`.
 """

@@ -4,7 +4,7 @@ A jamb of the map is the tip of a thin wall: seen along the line to its partner 
 sides, and a little way inside, the wall is no thicker than walls are.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 from shapely import MultiPolygon
 
 from backend.contours import as_polygons
+from backend.door_walls import DoorWallSettings, edges_of, goes_on, leads_through, wall_beyond
 from backend.room_map import Door
 from backend.sight import Sight
 
@@ -28,9 +29,9 @@ class DoorSettings:
     widest: float = 1.40  # larger takes passages for doors
     thickest: float = 0.40  # of the wall; larger takes the gaps between furniture for doors
     detail: float = 0.03  # larger ignores bigger bumps of the boundary when looking for jambs
-    beside: float = 0.20  # larger lets a reported jamb lie farther off the wall it ends, and asks for a longer one
-    skew: float = 0.35  # radians; larger takes gaps that stand more aslant to their walls for doors
     apart: float = 0.40  # larger joins more distant sightings into one door
+    many: int = 5  # views; larger asks more openings for walls: few views see a chance gap between things as a door
+    walls: DoorWallSettings = field(default_factory=DoorWallSettings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,9 +59,25 @@ def doors_of(
         np.concatenate([facing.weight, reported.weight]),
         np.concatenate([facing.view, reported.view]),
     )
-    groups = _grouped(seen.jambs, settings.apart)
-    merged = sorted((_merged(seen, group, sight) for group in groups), key=lambda door: tuple(door[0].mean(axis=0)))
-    return tuple(Door(f"door {i + 1}", jambs, sure, views) for i, (jambs, sure, views) in enumerate(merged))
+    merged = [_merged(seen, group, sight) for group in _grouped(seen.jambs, settings.apart)]
+    merged = [door for door, stays in zip(merged, _are_doors(free, merged, settings), strict=True) if stays]
+    merged.sort(key=lambda door: tuple(door.jambs.mean(axis=0)))
+    return tuple(Door(f"door {i + 1}", door.jambs, door.sure, door.views) for i, door in enumerate(merged))
+
+
+def _are_doors(free: MultiPolygon, merged: list["_Merged"], settings: DoorSettings) -> NDArray[np.bool_]:
+    """Which openings lead through and interrupt a wall, on both sides of what few views and no jambs of the map tell.
+
+    A gap between two things, or between a thing and a wall, looks like a door from few places only.
+    """
+    jambs = np.array([door.jambs for door in merged]).reshape(-1, 2, 2)
+    edges = edges_of(free)
+    walled = (
+        np.array([wall_beyond(edges, jambs[:, [end, 1 - end]], settings.walls) for end in (0, 1)]) > settings.walls.wall
+    )
+    many = np.array([door.sightings >= settings.many for door in merged], dtype=np.bool_)
+    facing = np.array([door.facing for door in merged], dtype=np.bool_)
+    return leads_through(free, jambs, settings.walls) & (many | walled.all(axis=0) | (facing & walled.any(axis=0)))
 
 
 def _door_wide(reported: Opening, settings: DoorSettings) -> Opening:
@@ -72,29 +89,11 @@ def _door_wide(reported: Opening, settings: DoorSettings) -> Opening:
 
 def _in_line(free: MultiPolygon, reported: Opening, settings: DoorSettings) -> Opening:
     """The reported openings in whose line a wall of the map goes on from a jamb: the others are gaps between things."""
-    edges = [
-        np.stack([corners[:-1], corners[1:]], axis=1)
-        for part in as_polygons(free.simplify(settings.detail)).geoms
-        for ring in (part.exterior, *part.interiors)
-        for corners in [np.asarray(ring.coords)]
-    ]
+    edges = edges_of(free.simplify(settings.detail))
     walled = np.zeros(len(reported.weight), dtype=np.bool_)
     for end in (0, 1):
-        walled |= _goes_on(np.concatenate([np.empty((0, 2, 2)), *edges]), reported.jambs[:, [end, 1 - end]], settings)
+        walled |= goes_on(edges, reported.jambs[:, [end, 1 - end]], settings.walls)
     return Opening(reported.jambs[walled], reported.weight[walled], reported.view[walled])
-
-
-def _goes_on(edges: Floats, openings: Floats, settings: DoorSettings) -> NDArray[np.bool_]:
-    """Openings (o, 2, 2) beside whose first jamb an edge (e, 2, 2) runs on in their line, away from the second."""
-    outward = openings[:, 0] - openings[:, 1]
-    outward = outward / np.linalg.norm(outward, axis=1, keepdims=True)
-    along = edges[:, 1] - edges[:, 0]
-    slope = np.abs(outward[:, None, 0] * along[None, :, 1] - outward[:, None, 1] * along[None, :, 0])
-    parallel = slope <= np.sin(settings.skew) * np.linalg.norm(along, axis=1)
-    on = np.max(np.sum((edges[None] - openings[:, None, None, 0]) * outward[:, None, None], axis=3), axis=2)
-    lines, jambs = shapely.linestrings(edges[None]), shapely.points(openings[:, :1])
-    near = shapely.distance(jambs, lines) <= settings.beside
-    return np.asarray((parallel & near & (on >= settings.beside)).any(axis=1))
 
 
 def facing_jambs(free: MultiPolygon, settings: DoorSettings) -> Opening:
@@ -191,8 +190,19 @@ def _sharpest(seen: Opening, group: Ints) -> Ints:
     return np.asarray(group[parallel & (width < 1.05 * width[shortest])])
 
 
-def _merged(seen: Opening, group: Ints, sight: Sight) -> tuple[Floats, float, Ints]:
-    """Jambs (2, 2) of one door, its confidence, and the views that reported it or saw through its middle."""
+@dataclass(frozen=True, eq=False)
+class _Merged:
+    """Sightings of one opening: its jambs (2, 2), how sure it is, the views that reported it or saw through its middle,
+    how many reported it, and whether jambs of the map face each other there."""
+
+    jambs: Floats
+    sure: float
+    views: Ints
+    sightings: int
+    facing: bool
+
+
+def _merged(seen: Opening, group: Ints, sight: Sight) -> _Merged:
     sharpest = _sharpest(seen, group)
     jambs = seen.jambs[sharpest]
     turned = np.sum((jambs[:, 1] - jambs[:, 0]) * (jambs[0, 1] - jambs[0, 0]), axis=1) < 0
@@ -200,5 +210,5 @@ def _merged(seen: Opening, group: Ints, sight: Sight) -> tuple[Floats, float, In
     _, through = sight.pairs(middle.mean(axis=0)[None])
     reported = seen.view[group][seen.view[group] >= 0]
     views = np.unique(np.concatenate([through, reported]))
-    evidence = seen.weight[group].max() + len(reported) + min(len(through), 4) / 2
-    return middle, float(evidence / (evidence + 1)), views
+    evidence = float(seen.weight[group].max() + len(reported) + min(len(through), 4) / 2)
+    return _Merged(middle, evidence / (evidence + 1), views, len(reported), bool((seen.view[group] < 0).any()))

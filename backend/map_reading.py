@@ -82,7 +82,7 @@ def read_map(
     objects = objects_in(free, edges, sight, settings.objects)
     walls = as_polygons(shapely.union_all([free, *(thing.outline for thing in objects if not thing.inferred)]))
     doors = doors_of(free, walls, _reported(views), sight, settings.doors)
-    objects = apart_from(objects, doors, settings.doors.beside)
+    objects = apart_from(objects, doors, settings.doors.walls.beside)
     safety = as_polygons(free.buffer(-settings.inset, join_style="mitre"))
     deep = round(settings.deep / counts.cell)
     decided = Decisions(partial(_decisions, views, (mask, counts, deep), sight, (edges, objects)))

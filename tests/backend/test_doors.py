@@ -34,9 +34,10 @@ def test_wide_passages_and_slits_are_no_doors() -> None:
 
 
 def test_openings_that_views_report_at_one_place_become_one_door() -> None:
-    jambs = np.array([[[1.0, 0.0], [1.9, 0.0]], [[1.92, 0.02], [1.04, 0.02]], [[6.0, 3.0], [6.0, 3.8]]])
+    room = as_polygons(ROOM.union(box(1, -1, 1.9, 0)).union(box(6, 2.5, 7, 3.3)))
+    jambs = np.array([[[1.0, 0.0], [1.9, 0.0]], [[1.92, 0.02], [1.04, 0.02]], [[6.0, 2.5], [6.0, 3.3]]])
     reported = Opening(jambs, np.ones(3), np.array([4, 7, 7]))
-    one, other = doors_of(ROOM, ROOM, reported, NOBODY, DoorSettings())
+    one, other = doors_of(room, room, reported, NOBODY, DoorSettings())
     np.testing.assert_allclose(one.jambs, [[1.02, 0.01], [1.91, 0.01]])
     assert one.views.tolist() == [4, 7]
     assert one.confidence > other.confidence
@@ -45,6 +46,17 @@ def test_openings_that_views_report_at_one_place_become_one_door() -> None:
 def test_a_gap_in_whose_line_no_wall_goes_on_is_no_door() -> None:
     reported = Opening(np.array([[[0.0, 1.0], [0.7, 0.3]], [[3.0, 1.5], [3.9, 1.5]]]), np.ones(2), np.array([4, 7]))
     assert doors_of(ROOM, ROOM, reported, NOBODY, DoorSettings()) == ()
+
+
+def test_an_opening_that_leads_nowhere_is_no_door() -> None:
+    reported = Opening(np.array([[[1.0, 0.0], [1.9, 0.0]]] * 6), np.ones(6), np.arange(6))
+    assert doors_of(ROOM, ROOM, reported, NOBODY, DoorSettings()) == ()
+
+
+def test_a_gap_beside_a_cupboard_that_few_views_took_for_a_door_is_none() -> None:
+    room = as_polygons(box(0, 0, 6, 4).difference(box(0, 1.5, 2, 2)))
+    gap = np.array([[[2.0, 1.75], [3.2, 1.75]]])
+    assert doors_of(room, room, Opening(gap, np.ones(1), np.array([3])), NOBODY, DoorSettings()) == ()
 
 
 @pytest.mark.parametrize("seed", range(4))
