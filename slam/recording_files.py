@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from frontend.scan import Scan
-from slam.readers.recording import OdometryNoise
+from slam.readers.recording import OdometryNoise, RecordingError
 from slam.whole_output import whole_folder
 
 FACTS = "recording.toml"
@@ -30,7 +30,13 @@ def readings_name(scans: int) -> str:
 
 
 def readings_csv(scans: Sequence[Scan]) -> bytes:
-    """One line per scan under a header that names every bearing in degrees; compressed where the name says so."""
+    """One line per scan under a header that names every bearing in degrees; compressed where the name says so.
+
+    Raises RecordingError where the scans do not share their bearings: one header would bend them.
+    """
+    for number, scan in enumerate(scans):
+        if scan.bearings.shape != scans[0].bearings.shape or not np.allclose(scan.bearings, scans[0].bearings, 0, 1e-5):
+            raise RecordingError(f"scan {number + 1} has other bearings than the first, but a table has one header")
     degrees = [f"{bearing:.4f}" for bearing in np.degrees(scans[0].bearings)]
     header = ["time", "x", "y", "heading", *(f"range@{bearing}" for bearing in degrees)]
     if scans[0].infrared is not None:

@@ -1,5 +1,6 @@
 """Opening a recording: the format is guessed from what lies there, or given by name."""
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -72,8 +73,10 @@ def guess_format(path: Path) -> str:
     first = next((text for _, text in Sieve(path, strict=True).lines() if text.strip()), "")
     if first == COLUMNS:
         return "crazyflie"
-    if first.startswith("time,"):
+    if re.match(r'"?time"?\s*[,;\t]', first):
         return "ranges-csv"
+    if not first:
+        raise RecordingError(f"{path}: the file is empty")
     raise RecordingError(
         f"{path.name}: format unknown, for it begins {first[:60]!r}; name it with --format, one of {', '.join(READERS)}"
     )

@@ -52,7 +52,7 @@ def read_room(path: Path) -> RoomMap:
 def read_features(path: Path) -> list[tuple[BaseGeometry, Properties]]:
     """Geometry and properties of every feature of a GeoJSON file."""
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = json.loads(path.read_text(encoding="utf-8-sig"))
         return [(shape(feature["geometry"]), feature.get("properties") or {}) for feature in content["features"]]
     except OSError as reason:
         raise RoomFileError(f"{path} cannot be read: {reason.strerror or reason}") from reason

@@ -16,7 +16,7 @@ class TomlFileError(Exception):
 def load(path: Path, shape: type[Table]) -> Table:
     """The file as an instance of the dataclass `shape`; keys that are absent take its defaults."""
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as reason:
         raise TomlFileError(f"{path} cannot be read: {reason.strerror or reason}") from reason
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as damage:

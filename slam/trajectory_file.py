@@ -40,7 +40,7 @@ def tum_text(times: Floats, poses: Floats) -> str:
 def read_trajectory(path: Path) -> Trajectory:
     """The trajectory at `path`, of whichever kind its first line is."""
     try:
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+        lines = path.read_text(encoding="utf-8-sig", errors="replace").splitlines()
     except OSError as reason:
         raise TrajectoryFileError(f"{path} cannot be read: {reason.strerror or reason}") from reason
     numbered = [(i, line.split()) for i, line in enumerate(lines, 1) if line.strip() and not line.startswith("#")]

@@ -15,6 +15,7 @@ from slam.readers.recording import DamagedLine, RecordingError
 
 # More than this and the file is not what it was taken for, or too little of the drive is left to speak for it.
 MOST_DAMAGED = 0.1
+ENCODING = "utf-8-sig"  # spreadsheets begin their files with a byte order mark
 
 Value = TypeVar("Value")
 
@@ -117,12 +118,12 @@ def _is_number(field: str) -> bool:
 
 def _opened(path: Path) -> TextIO:
     if path.suffix == ".gz":
-        return gzip.open(path, "rt", encoding="utf-8", errors="replace")
+        return gzip.open(path, "rt", encoding=ENCODING, errors="replace")
     if path.suffix == ".zip":
         packed = zipfile.ZipFile(path)
         # Some archivers add folders and hidden files of their own.
         files = [name for name in packed.namelist() if not name.endswith("/") and "/." not in f"/{name}"]
         if len(files) != 1:
             raise RecordingError(f"{path} packs {len(files)} files, but one recording is one file")
-        return io.TextIOWrapper(packed.open(files[0]), encoding="utf-8", errors="replace")
-    return path.open(encoding="utf-8", errors="replace")
+        return io.TextIOWrapper(packed.open(files[0]), encoding=ENCODING, errors="replace")
+    return path.open(encoding=ENCODING, errors="replace")

@@ -1,5 +1,6 @@
 import gzip
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,7 +8,8 @@ import pytest
 
 from frontend.scan import Scan
 from frontend.sensors.sonar import SONAR
-from slam.readers.recording import OdometryNoise
+from slam.readers.range_table import parse_header, parse_row
+from slam.readers.recording import OdometryNoise, RecordingError
 from slam.recording_files import readings_csv, recording_toml, write_recording
 from slam.whole_output import OutputError
 
@@ -27,6 +29,16 @@ def test_a_reading_without_an_echo_is_an_empty_field() -> None:
         "time,x,y,heading,range@-90.0000,range@0.0000,range@90.0000,infrared@-90.0000,infrared@0.0000,infrared@90.0000"
     )
     assert row == "30.000,0.100000,0.200000,-0.300000,1.2500,,3.0000,11,30,31"
+
+
+def test_a_reading_that_failed_is_read_back_as_one() -> None:
+    header, row = readings_csv([replace(SCAN, ranges=np.array([np.nan, np.inf, 3.0]))]).decode().splitlines()
+    assert np.array_equal(parse_row(row, parse_header(header), SONAR).ranges, [np.nan, np.inf, 3.0], equal_nan=True)
+
+
+def test_scans_that_do_not_share_their_bearings_are_refused() -> None:
+    with pytest.raises(RecordingError, match="scan 2 has other bearings than the first"):
+        readings_csv([SCAN, replace(SCAN, bearings=SCAN.bearings + 0.01)])
 
 
 def test_a_long_recording_is_compressed_and_says_the_same() -> None:
@@ -62,7 +74,7 @@ def test_a_recording_replaces_an_older_one_and_nothing_else(tmp_path: Path) -> N
 def test_a_failed_write_leaves_the_older_recording_and_no_rest(tmp_path: Path) -> None:
     folder = tmp_path / "recording"
     write_recording(folder, {"recording.toml": b"1"})
-    with pytest.raises(OSError, match="missing"):
+    with pytest.raises(OutputError, match="recording cannot be written: No such file"):
         write_recording(folder, {"recording.toml": b"2", "missing/readings.csv": b""})
     assert (folder / "recording.toml").read_bytes() == b"1"
     assert [path.name for path in tmp_path.iterdir()] == ["recording"]

@@ -22,6 +22,8 @@ with_real_logs = pytest.mark.skipif(REAL is None, reason="ROOMSKETCH_DATA names 
         ("a.csv", f"{COLUMNS}\n", "crazyflie"),
         ("a.csv", "time,x,y,heading\n", "ranges-csv"),
         ("a.txt", "time,x,y,heading\n", "ranges-csv"),
+        ("a.csv", "\ufefftime;x;y;heading\n", "ranges-csv"),
+        ("a.csv", '"time","x"\n', "ranges-csv"),
         ("a.g2o", "", "carmen"),
         ("a.bag", "", "ros-bag"),
         ("a.mcap", "", "ros-bag"),

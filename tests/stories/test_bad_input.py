@@ -44,7 +44,8 @@ def without_last_range(text: str) -> str:
 
 BAD_RECORDINGS: dict[str, tuple[Callable[[Path], Path], str]] = {
     "a missing file": (lambda f: f / "attic.log", "attic.log does not exist"),
-    "an unknown kind of file": (lambda f: (f / "a.txt", (f / "a.txt").write_text(""))[0], "format unknown"),
+    "an unknown kind of file": (lambda f: (f / "a.txt", (f / "a.txt").write_text("Dear John"))[0], "format unknown"),
+    "an empty file": (lambda f: (f / "a.txt", (f / "a.txt").write_text(""))[0], "a.txt: the file is empty"),
     "an empty log": (log, "no line of FLASER or ROBOTLASER1"),
     "a truncated line": (lambda f: log(f, flaser(1), flaser(2)[:30]), "hall.log line 2: 4 ranges are announced"),
     "a garbled line": (lambda f: log(f, flaser(1), "\x00\x17#!\n"), "hall.log line 2: "),

@@ -21,13 +21,35 @@ def test_a_row_becomes_a_scan() -> None:
     assert scan.time == 1.5
 
 
+def test_a_reading_that_failed_is_no_silence() -> None:
+    scan = parse_row("1,0,0,0,nan,,3.0", parse_header("time,x,y,heading,range@-90,range@0,range@90"), SONAR)
+    assert np.array_equal(scan.ranges, [np.nan, np.inf, 3.0], equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    "spelled",
+    [
+        ("time;x;y;heading;range@-0,5;range@0", "1,5;0,1;0;0;1,25;"),
+        ("time\tx\ty\theading\trange@-0.5\trange@0", "1.5\t0.1\t0\t0\t1.25\t"),
+        ("time, x, y, heading, range@-0.5, range@0", "1.5, 0.1, 0, 0, 1.25, "),
+        ('"time","x","y","heading","range@-0.5","range@0"', '"1.5","0.1","0","0","1.25",""'),
+    ],
+)
+def test_a_table_may_be_spelled_as_spreadsheets_do(spelled: tuple[str, str]) -> None:
+    header, row = spelled
+    scan = parse_row(row, parse_header(header), SONAR)
+    assert np.allclose(np.degrees(scan.bearings), [-0.5, 0])
+    assert np.array_equal(scan.ranges, [1.25, np.inf])
+    assert (scan.time, *scan.odometry) == (1.5, 0.1, 0, 0)
+
+
 @pytest.mark.parametrize(
     ("row", "says"),
     [
         ("1,0,0,0,1.0,2.0", "3 bearings"),
         ("1,0,0,0,1.0,-2.0,3.0", "range 2 of 3 is negative"),
         ("1,0,0,0,1.0,2.0,0", "range 3 of 3 is zero"),
-        ("1,0,0,0,nan,2.0,3.0", "range 1 of 3 is NaN"),
+        ("1,0,0,0,1.0,2.0,3577", "range 3 of 3 is 3577 m, but no sensor for rooms reaches 1000 m: ranges are metres"),
         ("1,inf,0,0,1.0,2.0,3.0", "x is not finite"),
         ("1,0,0,0,1.0,2.0,3.O", "'3.O' is not a number"),
     ],
@@ -47,6 +69,7 @@ def test_infrared_codes_have_two_digits() -> None:
     ("header", "says"),
     [
         ("t,x,y,heading,range@0", "should begin 'time,x,y,heading'"),
+        ("time,range@0", "where no wheels were read, x, y and heading are 0"),
         ("time,x,y,heading,depth@0", "neither range@DEGREES"),
         ("time,x,y,heading,range@0,range@-1", "do not increase"),
         ("time,x,y,heading,range@0,range@361", "within one turn"),
