@@ -159,11 +159,14 @@ class FactorGraph:
         self._fresh = gtsam.Values()
         self._values = self._tree.calculateEstimate()
 
-    def solve(self) -> None:
-        """Levenberg–Marquardt from the current estimates, where the incremental solver starts again."""
+    def solve(self, settled: float | None = None) -> None:
+        """Levenberg–Marquardt from the current estimates, where the incremental solver starts again.
+
+        settled: the relative fall of the error that ends it, where that of the settings is too coarse.
+        """
         parameters = gtsam.LevenbergMarquardtParams()
         parameters.setMaxIterations(self.settings.iterations)
-        parameters.setRelativeErrorTol(self.settings.settled)
+        parameters.setRelativeErrorTol(settled or self.settings.settled)
         parameters.setlambdaInitial(1e-6)
         self._values = gtsam.LevenbergMarquardtOptimizer(self._graph, self._values, parameters).optimize()
         self._tree, self._taken, self._fresh = gtsam.ISAM2(_tree_parameters()), 0, gtsam.Values(self._values)

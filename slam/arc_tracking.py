@@ -32,6 +32,7 @@ class ArcTrackingSettings:
     gate: float = 12.0  # squared distance from the wheels' claim (χ², 3 degrees of freedom, 0.7 %)
     metres: float = 0.04  # what the guess is worth: a smeared outline is laid no better; larger trusts it less
     radians: float = np.radians(1.5)
+    settled: float = 1e-7  # relative fall of the error that ends a solve: where arcs are few, a little moves far
     least_faces: int = 8  # surface points on either side of a guess
 
 
@@ -68,7 +69,7 @@ class ArcTracking:
         self._landmarks.see(graph, number, arcs, placement, near)
         turn = float(np.sqrt(min(move.covariance[2, 2], placement.covariance[2, 2])))
         self._landmarks.conceive(graph, number, turn)
-        graph.solve()
+        graph.solve(self.settings.settled)
         covariance = turned(placement.covariance, -placement.pose[2])
         return graph.poses[number], covariance, len(placement.pairs)
 

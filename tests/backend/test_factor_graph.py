@@ -274,3 +274,16 @@ def test_without_an_anchor_nothing_is_known_of_where_poses_are() -> None:
     graph.add_pose(0, np.zeros(3))
     with pytest.raises(GraphError, match="1 poses, but no anchor"):
         graph.covariances()
+
+
+def test_a_finer_end_goes_on_where_a_coarser_one_stopped() -> None:
+    true = twice_round()
+    coarse, fine = (chained(true, np.random.default_rng(1)) for _ in range(2))
+    for graph in (coarse, fine):
+        for k in range(20, len(true)):
+            graph.add_loop(k - 20, k, between(true[k - 20], true[k]), LOOP)
+    coarse.solve(0.5)
+    fine.solve(1e-9)
+    assert np.abs(coarse.poses - fine.poses).max() > 1e-3
+    coarse.solve(1e-9)
+    assert np.allclose(coarse.poses, fine.poses, atol=1e-4)
