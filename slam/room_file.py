@@ -54,6 +54,10 @@ def read_features(path: Path) -> list[tuple[BaseGeometry, Properties]]:
     try:
         content = json.loads(path.read_text(encoding="utf-8-sig"))
         return [(shape(feature["geometry"]), feature.get("properties") or {}) for feature in content["features"]]
+    except IsADirectoryError as reason:
+        raise RoomFileError(
+            f"{path} is a folder: name the GeoJSON file in it, which merge calls map.geojson"
+        ) from reason
     except OSError as reason:
         raise RoomFileError(f"{path} cannot be read: {reason.strerror or reason}") from reason
     except (json.JSONDecodeError, UnicodeDecodeError) as damage:

@@ -70,8 +70,12 @@ class Track:
 
 def read_relations(path: Path) -> Floats:
     """(r, 5) rows of t1, t2, x, y, yaw from lines `t1 t2 x y z roll pitch yaw`."""
+    try:
+        lines = path.read_text(encoding="utf-8-sig", errors="replace").splitlines()
+    except OSError as reason:
+        raise RelationsError(f"{path} cannot be read: {reason.strerror or reason}") from reason
     rows = []
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
+    for number, line in enumerate(lines, start=1):
         if not line.strip() or line.startswith("#"):
             continue
         try:
@@ -80,6 +84,8 @@ def read_relations(path: Path) -> Floats:
             raise RelationsError(
                 f"{path.name} line {number}: needs 8 numbers t1 t2 x y z roll pitch yaw ({damage})"
             ) from damage
+        if not np.isfinite((t1, t2, x, y, yaw)).all():
+            raise RelationsError(f"{path.name} line {number}: a number is not finite")
         rows.append((t1, t2, x, y, yaw))
     if not rows:
         raise RelationsError(f"{path.name} holds no relation")

@@ -25,6 +25,8 @@ def score(
 ) -> None:
     """Score a map and its trajectory; the scores are also kept in the report."""
     report = read_report(result)
+    if truth is poses is relations is None:
+        err.print("nothing to score against: name a --truth, --poses or --relations")
     scores: dict[str, Any] = {"counts": report["counts"]}
     if truth is not None:
         scores |= map_scores(result, truth, poses)

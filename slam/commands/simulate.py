@@ -14,7 +14,7 @@ def simulate(
     plan: Annotated[Path, typer.Argument(help="GeoJSON floor plan in metres, with materials, doors and a drive.")],
     to: Annotated[Path, typer.Option("--out", help="Folder for the recording with its truth.")],
     sensor: Annotated[str, typer.Option(help="sonar_infrared, lidar or time_of_flight.")] = "sonar_infrared",
-    seed: Annotated[int, typer.Option(help="Seed of all noise.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all noise.")] = 0,
     poses: Annotated[Path | None, typer.Option(help="TUM file of true poses, instead of the plan's drive.")] = None,
 ) -> None:
     """Drive a simulated sensor through a floor plan and record what it reads."""

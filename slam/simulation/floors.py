@@ -13,6 +13,7 @@ from shapely.geometry import mapping
 from shapely.geometry.base import BaseGeometry
 
 from frontend.scan import Floats
+from slam.whole_output import write_whole
 
 Plan = dict[str, Any]
 Doors = Mapping[str, LineString]
@@ -35,12 +36,10 @@ def plan_of(name: str, description: str, features: Sequence[Plan]) -> Plan:
 
 
 def write_plan(plan: Plan, path: Path) -> None:
-    """Write a plan file, one feature a line, to a temporary name first."""
+    """Write a plan file, one feature a line, whole or not at all. Raises OutputError."""
     head = {"type": "FeatureCollection"} | {key: value for key, value in plan.items() if key != "features"}
     features = ",\n".join(json.dumps(part) for part in plan["features"])
-    making = path.with_name(f".{path.name}")
-    making.write_text(f'{json.dumps(head)[:-1]}, "features": [\n{features}\n]}}\n')
-    making.replace(path)
+    write_whole(path, f'{json.dumps(head)[:-1]}, "features": [\n{features}\n]}}\n')
 
 
 def walls_around(

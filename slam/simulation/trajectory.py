@@ -33,11 +33,12 @@ def true_poses(drive: Drive) -> Floats:
         return np.column_stack([points, headings])
     legs = np.diff(drive.waypoints, axis=0)
     lengths = np.linalg.norm(legs, axis=1)
+    waypoints, legs, lengths = drive.waypoints[:-1][lengths > 0], legs[lengths > 0], lengths[lengths > 0]
     reached = np.concatenate([[0.0], np.cumsum(lengths)])
     along = np.linspace(0.0, reached[-1], max(2, round(reached[-1] / drive.step) + 1))
     leg = np.clip(np.searchsorted(reached, along, side="right") - 1, 0, len(legs) - 1)
     share = ((along - reached[leg]) / lengths[leg])[:, None]
-    points = drive.waypoints[leg] + share * legs[leg]
+    points = waypoints[leg] + share * legs[leg]
     return np.column_stack([points, np.arctan2(legs[leg, 1], legs[leg, 0])])
 
 

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely import LineString, MultiPolygon, Point, Polygon, STRtree
+from shapely import LineString, Point, Polygon, STRtree
+from shapely.errors import ShapelyError
 from shapely.geometry import shape
 from shapely.geometry.base import BaseGeometry
 
 from frontend.scan import Floats
-from frontend.sensors.rays import cast
 from frontend.sensors.surfaces import MATERIALS, Material, Surfaces, join_rings
 
 LEAF = 0.04  # metres: thickness of a closed door
@@ -86,9 +86,13 @@ class World:
 def read_plan(path: Path) -> World:
     """The world of a plan file. Raises PlanError with the file and the feature where it cannot be."""
     try:
-        plan = json.loads(path.read_text())
-    except (OSError, json.JSONDecodeError) as error:
-        raise PlanError(f"{path}: cannot be read as GeoJSON: {error}") from error
+        plan = json.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as reason:
+        raise PlanError(f"{path} cannot be read: {reason.strerror or reason}") from reason
+    except ValueError as damage:
+        raise PlanError(f"{path}: cannot be read as GeoJSON: {damage}") from damage
+    if not isinstance(plan, dict) or not isinstance(plan.get("features"), list):
+        raise PlanError(f"{path} is not a GeoJSON FeatureCollection")
     try:
         return build_world(plan)
     except PlanError as error:
@@ -118,13 +122,19 @@ def build_world(plan: dict[str, Any]) -> World:
 
 
 def _checked(index: int, feature: dict[str, Any]) -> tuple[str, Any, dict[str, Any]]:
-    properties = feature.get("properties") or {}
-    kind = properties.get("kind")
+    try:
+        properties = feature.get("properties") or {}
+        kind = properties.get("kind")
+    except AttributeError as damage:
+        raise PlanError(f"feature {index} is no GeoJSON feature with properties") from damage
     expected = {"wall": "Polygon", "obstacle": "Polygon", "room": "Polygon", "boundary": "Polygon"}
     expected |= {"door": "LineString", "drive": "LineString"}
     if kind not in expected:
         raise PlanError(f"feature {index} has kind {kind!r}, known kinds are {', '.join(expected)}")
-    geometry = shape(feature["geometry"])
+    try:
+        geometry = shapely.force_2d(shape(feature["geometry"]))
+    except (KeyError, TypeError, AttributeError, ValueError, ShapelyError) as damage:
+        raise PlanError(f"feature {index}: the {kind} has no geometry that can be read: {damage!r}") from damage
     if geometry.geom_type != expected[kind] or not geometry.is_valid:
         raise PlanError(f"feature {index}: a {kind} must be a valid {expected[kind]}, not a {geometry.geom_type}")
     material = properties.get("material", "rough")
@@ -134,13 +144,13 @@ def _checked(index: int, feature: dict[str, Any]) -> tuple[str, Any, dict[str, A
 
 
 def _solid(kind: str, outline: BaseGeometry, properties: dict[str, Any]) -> Solid:
-    radius = float(properties.get("radius", np.inf))
-    return Solid(kind, outline, properties.get("material", "rough"), properties.get("reflectance"), radius)
+    radius = _above_zero(properties, "radius") or np.inf
+    return Solid(kind, outline, properties.get("material", "rough"), _above_zero(properties, "reflectance"), radius)
 
 
 def _leaf(opening: LineString, properties: dict[str, Any]) -> Solid:
     outline = opening.buffer(LEAF / 2, cap_style="flat")
-    return Solid("door", outline, properties.get("material", "smooth"), properties.get("reflectance"))
+    return Solid("door", outline, properties.get("material", "smooth"), _above_zero(properties, "reflectance"))
 
 
 def _around(boundary: Polygon, properties: dict[str, Any]) -> Solid:
@@ -153,10 +163,23 @@ def _door(opening: LineString, properties: dict[str, Any]) -> PlanDoor:
 
 def _drive(line: LineString, properties: dict[str, Any]) -> Drive:
     headings = properties.get("headings")
-    if headings is not None and len(headings) != len(line.coords):
+    if isinstance(headings, list) and len(headings) != len(line.coords):
         raise PlanError(f"the drive has {len(line.coords)} waypoints, but {len(headings)} headings")
-    radians = None if headings is None else np.radians(np.array(headings, float))
-    return Drive(np.array(line.coords), properties.get("step"), radians, properties.get("wheels", {}))
+    try:
+        radians = None if headings is None else np.radians(np.array(headings, float))
+        wheels = {str(name): float(value) for name, value in properties.get("wheels", {}).items()}
+    except (TypeError, ValueError, AttributeError) as damage:
+        raise PlanError(f"the drive's headings and wheels should be numbers: {damage}") from damage
+    return Drive(np.array(line.coords), _above_zero(properties, "step"), radians, wheels)
+
+
+def _above_zero(properties: dict[str, Any], name: str) -> float | None:
+    value = properties.get(name)
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < np.inf:
+        raise PlanError(f"{name} = {value!r} should be a number above 0")
+    return float(value)
 
 
 def _free_space(solids: list[Solid], drive: Drive | None) -> Polygon:
@@ -199,16 +222,3 @@ def _real_corners(ring: Floats, owners: list[Solid]) -> NDArray[np.int64]:
     turn = np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], np.sum(before * after, axis=1))
     changes = [ours.made_of != theirs.made_of for ours, theirs in zip(owners, owners[-1:] + owners[:-1], strict=True)]
     return np.flatnonzero((np.abs(turn) > 1e-4) | np.array(changes))
-
-
-def visible_free_space(world: World, poses: Floats, reach: float) -> Polygon | MultiPolygon:
-    """The part of the free space that a thin beam from poses (p, 3) could see within `reach` metres."""
-    angles = np.linspace(-np.pi, np.pi, 3600, endpoint=False)
-    views = []
-    for pose in poses:
-        distances, _ = cast(world.surfaces, pose[:2], angles)
-        seen = np.minimum(distances, reach)[:, None]
-        views.append(Polygon(pose[:2] + seen * np.stack([np.cos(angles), np.sin(angles)], axis=1)).buffer(0))
-    union = shapely.union_all(views).intersection(world.free)
-    assert isinstance(union, Polygon | MultiPolygon)
-    return union

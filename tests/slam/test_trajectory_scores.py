@@ -169,6 +169,11 @@ def test_relations_are_read_and_damage_is_named_by_its_line(tmp_path: Path) -> N
     path.write_text("1 2 3 4 0 0 0 0.5\n1 2 3\n")
     with pytest.raises(RelationsError, match=r"a\.relations line 2: needs 8 numbers"):
         read_relations(path)
+    path.write_text("1 2 3 4 0 0 0 nan\n")
+    with pytest.raises(RelationsError, match=r"a\.relations line 1: a number is not finite"):
+        read_relations(path)
+    with pytest.raises(RelationsError, match=r"b\.relations cannot be read: No such file"):
+        read_relations(tmp_path / "b.relations")
     path.write_text("# nothing\n")
     with pytest.raises(RelationsError, match="holds no relation"):
         read_relations(path)

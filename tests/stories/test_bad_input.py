@@ -147,6 +147,10 @@ def test_a_bad_question_to_a_planner_is_one_sentence(
     [
         (["score", "nowhere"], "nowhere is no result of merge: report.json no such file"),
         (["draw", "nowhere"], "nowhere is no result of merge"),
+        (
+            ["plan", ".", "--from", "0,0", "--to", "1,1", "--robot", "disc:1", "--planner", "cones"],
+            ". is a folder: name",
+        ),
         (["simulate", "nowhere.geojson", "--out", "folder"], "nowhere.geojson"),
         (
             ["plan", "nowhere.geojson", "--from", "0,0", "--to", "1,1", "--robot", "disc:1", "--planner", "cones"],

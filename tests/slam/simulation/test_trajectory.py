@@ -21,6 +21,11 @@ def test_a_stepped_drive_places_scans_evenly_and_faces_ahead() -> None:
     assert set(np.round(np.degrees(poses[:, 2]))) == {0, 90, 180}
 
 
+def test_a_waypoint_that_is_said_twice_changes_nothing() -> None:
+    twice = np.repeat(SQUARE, 2, axis=0)
+    np.testing.assert_array_equal(true_poses(Drive(twice, step=0.5)), true_poses(Drive(SQUARE, step=0.5)))
+
+
 def test_a_drive_without_a_step_scans_at_its_waypoints_with_the_headings_given() -> None:
     poses = true_poses(Drive(SQUARE, headings=np.arange(4.0)))
     assert poses == pytest.approx(np.column_stack([SQUARE, np.arange(4.0)]))

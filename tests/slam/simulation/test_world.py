@@ -5,15 +5,15 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from shapely import LineString, Polygon, box
+from shapely import LineString, box
 
 from slam.simulation.floors import drive_along, feature
-from slam.simulation.world import PlanError, build_world, read_plan, visible_free_space
+from slam.simulation.world import PlanError, build_world, read_plan
 
 SHELL = [feature(box(-0.2, -0.2, 6.2, 4.2).difference(box(0, 0, 6, 4)), "wall", material="rough")]
 
 
-def plan(*features: dict[str, Any]) -> dict[str, Any]:
+def plan(*features: Any) -> dict[str, Any]:
     return {"name": "test", "features": [*SHELL, *features]}
 
 
@@ -56,15 +56,6 @@ def test_beyond_a_boundary_all_is_wall() -> None:
     assert world.free.equals(box(0, 0, 3, 2))
 
 
-def test_what_one_place_sees_ends_at_the_shadow_of_an_obstacle() -> None:
-    world = build_world(plan(feature(box(2, 1.5, 2.5, 2.5), "obstacle")))
-    seen = visible_free_space(world, np.array([[1.0, 2.0, 0.0]]), reach=20.0)
-    shadow = Polygon([(2.5, 1.4), (2.5, 2.6), (6, 3.5), (6, 0.5)]).intersection(box(2.6, 1.6, 6, 2.4))
-    assert seen.intersection(shadow).area < 1e-6
-    assert seen.area < world.free.area - 3
-    assert seen.difference(world.free).area < 1e-9
-
-
 @pytest.mark.parametrize(
     ("extra", "message"),
     [
@@ -74,9 +65,19 @@ def test_what_one_place_sees_ends_at_the_shadow_of_an_obstacle() -> None:
         (drive_along([(9, 9), (8, 9)]), "the drive starts at 9, 9, which is not in the enclosed free space"),
         (drive_along([(1, 1), (8, 1), (1, 2)]), "the drive passes through a wall or an obstacle"),
         (drive_along([(1, 1), (2, 1)], headings=[0.0]), "the drive has 2 waypoints, but 1 headings"),
+        (drive_along([(1, 1), (2, 1)], headings=["n", "e"]), "the drive's headings and wheels should be numbers"),
+        (drive_along([(1, 1), (2, 1)], wheels=[0.1]), "the drive's headings and wheels should be numbers"),
+        (drive_along([(1, 1), (2, 1)], step=0), "step = 0 should be a number above 0"),
+        (feature(box(1, 1, 2, 2), "obstacle", radius="1 m"), "radius = '1 m' should be a number above 0"),
+        ({"properties": {"kind": "wall"}}, "feature 1: the wall has no geometry that can be read"),
+        (
+            {"properties": {"kind": "drive"}, "geometry": {"type": "LineString", "coordinates": [[1, 1]]}},
+            "feature 1: the drive has no geometry that can be read",
+        ),
+        ([], "feature 1 is no GeoJSON feature with properties"),
     ],
 )
-def test_a_plan_that_cannot_be_says_which_feature_and_why(extra: dict[str, Any], message: str, tmp_path: Path) -> None:
+def test_a_plan_that_cannot_be_says_which_feature_and_why(extra: Any, message: str, tmp_path: Path) -> None:
     file = tmp_path / "plan.geojson"
     file.write_text(json.dumps(plan(extra)))
     with pytest.raises(PlanError, match=message) as caught:
@@ -93,3 +94,15 @@ def test_a_file_that_is_no_json_is_refused(tmp_path: Path) -> None:
     (tmp_path / "plan.geojson").write_text("{")
     with pytest.raises(PlanError, match=r"plan.geojson: cannot be read as GeoJSON"):
         read_plan(tmp_path / "plan.geojson")
+
+
+def test_a_file_of_something_else_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "plan.geojson").write_text('{"features": null}')
+    with pytest.raises(PlanError, match=r"plan.geojson is not a GeoJSON FeatureCollection"):
+        read_plan(tmp_path / "plan.geojson")
+
+
+def test_heights_of_a_drawing_do_no_harm() -> None:
+    room = {"type": "Polygon", "coordinates": [[[0, 0, 7], [4, 0, 7], [4, 4, 7], [0, 4, 7], [0, 0, 7]]]}
+    world = build_world({"features": [{"properties": {"kind": "boundary"}, "geometry": room}]})
+    assert world.surfaces.segments.shape[2] == 2
