@@ -43,6 +43,16 @@ def normal_equations(placed: Samples, weight: Floats, lines: CellLines, poses: F
     return blocks, gradient, Shared(*shared)
 
 
+def joined(one: Shared, other: Shared) -> Shared:
+    """Two couplings of the same views as one."""
+    return Shared(
+        np.concatenate([one.view, other.view]),
+        np.concatenate([one.arm, other.arm]),
+        np.concatenate([one.ends, other.ends + len(one.view)]),
+        np.concatenate([one.yielding, other.yielding]),
+    )
+
+
 def solved(blocks: Floats, shared: Shared, right: Floats) -> Floats:
     """The steps (v, 3) for which blocks and coupling give the right side (v, 3): conjugate gradients."""
     return np.asarray(_conjugate_gradients(blocks, tuple(shared), right, SOLVED, MOST_ROUNDS))
