@@ -4,7 +4,7 @@ Views vote cell by cell, one-sidedly; the votes become polygons again, and every
 says who measured it. A view can be added, moved and read at any time, in any order.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -27,6 +27,7 @@ from backend.wall_faces import FaceSettings, WallFaces, fuse_faces
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 VOTED = 1e-3  # metres a corner may lie off its vote
+STILL = np.array([1e-3, 1e-3, 1e-4])  # metres and radians of a pose that change nothing
 
 
 class MergingError(Exception):
@@ -89,6 +90,23 @@ class Merger:
             raise MergingError(f"view {index} cannot be removed: it was never added")
         self._evidence.cast(self._placed.pop(index).ballot, -1)
         self._settled.forget(index)
+
+    def follow(self, views: Sequence[View], poses: Floats) -> None:
+        """Hold these views at poses (n, 3), numbered as they come, and no others: only what changed votes anew.
+
+        A view that moved by less than a millimetre, and no more seen from there, stays where it is.
+        """
+        for index in [index for index in self._placed if index >= len(views)]:
+            self.remove(index)
+        for index, (view, pose) in enumerate(zip(views, poses, strict=True)):
+            known = self._placed.get(index)
+            if known is not None and not known.view.says_the_same(view):
+                self.remove(index)
+                known = None
+            if known is None:
+                self.add(view, pose, index)
+            elif np.any(np.abs(pose - known.pose) > STILL):
+                self.move(index, pose)
 
     def result(self) -> RoomMap:
         """The room map of all views so far. Raises MergingError when there are none."""
@@ -193,6 +211,5 @@ class Merger:
 def merge_views(views: Iterable[View], poses: Floats, settings: MergeSettings | None = None) -> RoomMap:
     """The room map of views at poses (n, 3)."""
     merger = Merger(settings)
-    for index, (view, pose) in enumerate(zip(views, poses, strict=True)):
-        merger.add(view, pose, index)
+    merger.follow(list(views), poses)
     return merger.result()

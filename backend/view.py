@@ -64,6 +64,14 @@ class View:
         if self.wide is not None and not self.wide.sure.shape == self.wide.aside.shape == (corners,):
             raise ViewError(f"{corners} corners, but {self.wide.sure.size} sure lengths of a wide beam")
 
+    def says_the_same(self, other: "View") -> bool:
+        """Whether both views tell the same of the room."""
+        mine, theirs = (
+            (v.boundary, v.edges, v.spread, v.origin, v.openings, *((v.wide.sure, v.wide.aside) if v.wide else ()))
+            for v in (self, other)
+        )
+        return len(mine) == len(theirs) and all(map(np.array_equal, mine, theirs))
+
     @property
     def free_space(self) -> Polygon:
         """The polygon inside the boundary."""

@@ -11,7 +11,7 @@ from time import perf_counter
 import numpy as np
 
 from backend.estimate import Estimate
-from backend.polygon_merging import merge_views
+from backend.polygon_merging import Merger
 from backend.room_map import RoomMap
 from frontend.door_edges import DoorEdges
 from frontend.scan import Floats, Scan
@@ -57,12 +57,17 @@ def merge_scans(
     return merged_so_far(mapper, settings)
 
 
-def merged_so_far(mapper: Mapper, settings: Settings) -> Merged:
-    """What the scans that the mapper took in so far give; it may take in more afterwards."""
+def merged_so_far(mapper: Mapper, settings: Settings, merger: Merger | None = None) -> Merged:
+    """What the scans that the mapper took in so far give; it may take in more afterwards.
+
+    merger: holds the map of an earlier look, so that this one costs what has changed since.
+    """
     estimate = mapper.result()
     clock = perf_counter()
     mapped = tuple(mapper.percepts[number] for number in np.flatnonzero(estimate.mapped))
     poses, covariances = estimate.poses[estimate.mapped], estimate.covariances[estimate.mapped]
     views, door_edges = sharpened_views(mapped, poses, covariances, settings.door_edges)
-    room = merge_views(views, poses, settings.merging)
+    merger = merger or Merger(settings.merging)
+    merger.follow(views, poses)
+    room = merger.result()
     return Merged(mapped, estimate, door_edges, room, {**mapper.timings, "merging": perf_counter() - clock})

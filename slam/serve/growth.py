@@ -9,6 +9,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+from backend.polygon_merging import Merger
 from slam.mapper import Mapper
 from slam.pipeline import Merged, merged_so_far
 from slam.planning import tour_or_reason
@@ -71,7 +72,7 @@ class _Looks:
     """Merges the views so far now and then: as often as a fixed share of the time allows."""
 
     def __init__(self, mapper: Mapper, settings: Settings) -> None:
-        self._mapper, self._settings = mapper, settings
+        self._mapper, self._settings, self._merger = mapper, settings, Merger(settings.merging)
         self._since, self._spent = perf_counter(), 0.0
 
     def look_if_due(self) -> Iterator[bytes]:
@@ -79,7 +80,7 @@ class _Looks:
         clock = perf_counter()
         if self._spent > LOOK_SHARE * (clock - self._since):
             return
-        yield from result_messages(merged_so_far(self._mapper, self._settings), final=False)
+        yield from result_messages(merged_so_far(self._mapper, self._settings, self._merger), final=False)
         self._spent += perf_counter() - clock
 
 

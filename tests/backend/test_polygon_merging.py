@@ -62,3 +62,23 @@ def test_a_surface_less_sure_than_the_strip_is_thick_votes_for_no_wall() -> None
     pose = np.array([1.0, 1.0, 0.0])
     room_map = merge_views([sure, vague, vague], np.array([pose, pose, pose]))
     assert room_map.free.symmetric_difference(plan.free).area < 0.02 * plan.free.area
+
+
+def test_a_map_that_follows_its_views_is_the_map_of_these_views() -> None:
+    rng = np.random.default_rng(8)
+    plan = furnished_plan(rng, 3)
+    poses = scattered_poses(plan, 20, rng)
+    views = [view_of(plan, pose, Rays(), rng) for pose in poses]
+    merger = Merger()
+    merger.follow(views[:15] + views[:2], np.concatenate([poses[:15], poses[:2]]))
+    merger.result()
+    merger.follow(views, poses)
+    grown, fresh = merger.result().free, merge_views(views, poses).free
+    assert grown.symmetric_difference(fresh).area < 1e-3 * fresh.area
+    merger.follow(views[:12], poses[:12])
+    assert {int(view) for edge in merger.result().edges for view in edge.views} <= set(range(12))
+
+
+def test_a_view_that_is_not_in_the_map_cannot_be_removed() -> None:
+    with pytest.raises(MergingError, match="never added"):
+        Merger().remove(3)

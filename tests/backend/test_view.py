@@ -37,3 +37,11 @@ def test_what_is_surely_free_ends_on_the_beams_of_the_boundary() -> None:
     np.testing.assert_allclose(ring[1:3], SQUARE[1:3])
     np.testing.assert_allclose(np.linalg.norm(ring[[0, 3]], axis=1), [1.0, 0.5])
     np.testing.assert_allclose(ring[:, 0] * SQUARE[:, 1], ring[:, 1] * SQUARE[:, 0], atol=1e-12)
+
+
+def test_views_say_the_same_when_all_their_arrays_do() -> None:
+    wide = WideBeam(np.full(4, 0.5), np.zeros(4))
+    assert square_view().says_the_same(square_view())
+    assert not square_view().says_the_same(replace(square_view(), boundary=1.01 * SQUARE))
+    assert not square_view().says_the_same(replace(square_view(), wide=wide))
+    assert replace(square_view(), wide=wide).says_the_same(replace(square_view(), wide=wide))
