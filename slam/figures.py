@@ -14,7 +14,7 @@ from matplotlib.path import Path as Outline
 from shapely import MultiPolygon, Polygon
 
 from backend.contours import as_polygons
-from backend.room_map import MapEdgeKind, RoomMap
+from backend.room_map import MapEdgeKind, RoomMap, Verdict
 from backend.view import View
 from frontend.contour import Contour, EdgeKind
 from frontend.primal_sketch import KnotKind
@@ -38,6 +38,14 @@ EDGE_STYLES = {
     EdgeKind.NO_RETURN: ("no return, or inferred", FAINT, "dotted"),
     EdgeKind.SIDE: ("end of the view", FAINT, "dashed"),
     EdgeKind.DOOR_ARC: ("door arc", OPENED, "solid"),
+}
+
+VERDICT_STYLES = {
+    Verdict.KEPT: ("surface kept", INK, "solid"),
+    Verdict.CONTRADICTED: ("surface others saw through", "#d62728", "solid"),
+    Verdict.SEEN_BEHIND: ("line of sight others saw behind", OPENED, "dotted"),
+    Verdict.OPEN: ("line of sight nobody saw behind", FAKE, "dashed"),
+    Verdict.INFERRED: ("object inferred", INFERRED, "solid"),
 }
 
 
@@ -80,6 +88,17 @@ def overlaid_views(story: Story) -> Figure:
     _lines(axes, np.concatenate([np.empty((0, 2, 2)), *walls]), INK, width=0.6)
     _draw_drive(axes, story.poses)
     return _framed(figure, axes, shapely.get_coordinates(placed))
+
+
+def decisions(story: Story) -> Figure:
+    """What became of every piece of every view's boundary: kept, thrown away, or filled in by inference."""
+    figure, axes = _sheet("what the merge decided")
+    axes.add_patch(_patch(story.room.free, facecolor=FREE, edgecolor="none"))
+    for verdict, (label, ink, style) in VERDICT_STYLES.items():
+        pieces = [made.piece for made in story.room.decisions if made.verdict == verdict]
+        _lines(axes, pieces, ink, label=f"{label}: {len(pieces)}", style=style)
+    _draw_drive(axes, story.poses)
+    return _framed(figure, axes, shapely.get_coordinates(story.room.free))
 
 
 def merged_map(story: Story) -> Figure:
@@ -147,6 +166,7 @@ FIGURES: dict[str, Callable[[Story], Figure]] = {
     "2_redrawn_boundaries": redrawn_boundaries,
     "3_sketches": sketches,
     "4_overlaid_views": overlaid_views,
+    "4b_decisions": decisions,
     "5_map": merged_map,
     "6_paths": planned_paths,
 }
@@ -252,7 +272,9 @@ def _pieces(contour: Contour, kind: EdgeKind) -> Floats:
     return np.stack([contour.points[starts], contour.points[(starts + 1) % len(contour.points)]], axis=1)
 
 
-def _lines(axes: Axes, pieces: Floats, ink: str, *, label: str = "", style: str = "solid", width: float = 1.2) -> None:
+def _lines(
+    axes: Axes, pieces: Floats | list[Floats], ink: str, *, label: str = "", style: str = "solid", width: float = 1.2
+) -> None:
     if len(pieces):
         lines = LineCollection(list(pieces), colors=ink, linestyles=style, linewidths=width, label=label or None)
         axes.add_collection(lines)

@@ -3,7 +3,7 @@
 import json
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from backend.room_map import MapEdgeKind, RoomMap
 from planners.path import Answer
 from slam import toml_file
+from slam.decision_file import decisions_text, read_decisions
 from slam.perception import perceive
 from slam.pipeline import Merged
 from slam.planning import answer_values
@@ -24,8 +25,9 @@ from slam.story import Story
 from slam.trajectory_file import Trajectory, read_trajectory, tum_text
 from slam.whole_output import RESULT_MARK, write_whole
 
-MAP, TRAJECTORY, ODOMETRY, GRAPH, SETTINGS, REPORT = (
+MAP, DECISIONS, TRAJECTORY, ODOMETRY, GRAPH, SETTINGS, REPORT = (
     "map.geojson",
+    "decisions.geojson",
     "trajectory.tum",
     "odometry.tum",
     "graph.g2o",
@@ -66,6 +68,7 @@ def write_result(folder: Path, merged: Merged, recording: Recording, settings: S
     times = np.array([percept.scan.time for percept in merged.percepts])
     trail = recording.odometry or _trail(recording)
     (folder / MAP).write_text(room_text(merged.room, merged.estimate.landmarks), encoding="utf-8")
+    (folder / DECISIONS).write_text(decisions_text(merged.room.decisions), encoding="utf-8")
     (folder / TRAJECTORY).write_text(tum_text(times, merged.poses), encoding="utf-8")
     (folder / ODOMETRY).write_text(tum_text(trail.times, trail.poses), encoding="utf-8")
     (folder / GRAPH).write_text(g2o_text(merged.estimate), encoding="utf-8")
@@ -132,7 +135,8 @@ def story_of(folder: Path) -> Story:
     paths = {name: np.array(answer["poses"]) for name, answer in report["paths"].items() if answer["poses"]}
     landmarks = points_of_kind(read_features(folder / MAP), "landmark")
     percepts = tuple(perceive(scan, settings.frontend) for scan in scans)
-    return Story(percepts, poses, read_room(folder / MAP), landmarks, paths)
+    room = replace(read_room(folder / MAP), decisions=read_decisions(folder / DECISIONS))
+    return Story(percepts, poses, room, landmarks, paths)
 
 
 def _counts(merged: Merged, recording: Recording) -> dict[str, Any]:

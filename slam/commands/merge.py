@@ -72,7 +72,8 @@ def merge(
     if trouble is not None:
         out.print(f"no path planned: {trouble}")
     out.print(f"next best view: {_told_next(story.next_view)}")
-    out.print(f"{to}: report.html, map.geojson, trajectory.tum, graph.g2o, report.json, settings.toml, figures")
+    files = "report.html, map.geojson, decisions.geojson, trajectory.tum, graph.g2o, report.json, settings.toml"
+    out.print(f"{to}: {files}, figures")
 
 
 def _tell(merged: Merged, drive: Recording, report: dict[str, Any]) -> None:

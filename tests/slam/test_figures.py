@@ -7,7 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 from shapely import MultiPolygon, Polygon, box
 
-from backend.room_map import Door, MapEdge, MapEdgeKind, Obstacle, RoomMap
+from backend.room_map import Decision, Door, MapEdge, MapEdgeKind, Obstacle, RoomMap, Verdict
 from frontend.scan import Scan, Sensor
 from slam.figures import FIGURES, draw, draw_errors, map_errors
 from slam.map_scores import MapTruth
@@ -31,6 +31,10 @@ def story(views: int) -> Story:
         (Door("east", np.array([[2.0, 0.0], [2.0, 0.9]]), 1.0, np.arange(1)),),
         (Obstacle(box(0.5, 0.5, 1, 1), False, 2, np.arange(2)), Obstacle(box(-1, -1, 0, 0), True, 0, np.arange(0))),
         np.empty((0, 2)),
+        (
+            Decision(Verdict.KEPT, np.array([[-2.0, -2.0], [2.0, -2.0]]), np.array([0]), np.arange(3)),
+            Decision(Verdict.INFERRED, np.array([[-1.0, -1.0], [0.0, -1.0], [0.0, 0.0]]), np.arange(0), np.arange(2)),
+        ),
     )
     poses = np.zeros((views, 3)) + 0.1 * np.arange(views)[:, None]
     paths = {"cones": np.array([[0.0, 0.0, 0.0], [1.5, 0.0, 0.0]])}
@@ -55,6 +59,7 @@ def test_every_figure_becomes_a_picture(tmp_path: Path) -> None:
         ("2_redrawn_boundaries", {"surface", "no return, or inferred"}),
         ("3_sketches", {"line", "corner"}),
         ("5_map", {"wall", "frontier", "door", "obstacle", "inferred obstacle", "drive", "1 landmarks"}),
+        ("4b_decisions", {"surface kept: 1", "object inferred: 1", "drive"}),
         ("6_paths", {"cones"}),
     ],
 )

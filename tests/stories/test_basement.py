@@ -45,10 +45,10 @@ def true_free_space() -> MultiPolygon:
 
 def test_a_result_holds_map_trajectory_report_settings_and_figures(result: Path) -> None:
     assert {path.name for path in result.iterdir()} == {
-        "map.geojson", "trajectory.tum", "odometry.tum", "graph.g2o",
+        "map.geojson", "decisions.geojson", "trajectory.tum", "odometry.tum", "graph.g2o",
         "report.json", "report.html", "settings.toml", "figures",
     }  # fmt: skip
-    assert len(list((result / "figures").glob("*.png"))) == 10
+    assert len(list((result / "figures").glob("*.png"))) == 11
     assert len(read_trajectory(result / "trajectory.tum").times) == 3
     assert read_room(result / "map.geojson").free.area > 10
     report = json.loads((result / "report.json").read_text())
@@ -98,7 +98,7 @@ def test_the_figures_can_be_drawn_again_from_the_folder(result: Path) -> None:
     for figure in (result / "figures").iterdir():
         figure.unlink()
     assert run("draw", result).code == 0
-    assert len(list((result / "figures").glob("*.png"))) == 10
+    assert len(list((result / "figures").glob("*.png"))) == 11
     assert len(story_of(result).percepts) == 3
 
 
