@@ -8,7 +8,8 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
-from shapely import MultiPolygon, box
+import shapely
+from shapely import LineString, MultiPolygon, box
 
 from frontend.scan import Floats
 from planners.path import Answer
@@ -64,7 +65,13 @@ def _drawable(answer: Answer) -> dict[str, Any]:
     """What shows how the planner thought: the spines it drove along, and the gap that is too narrow."""
     gap = None
     if answer.gap is not None:
-        gap = {"edges": answer.gap.edges.tolist(), "width": answer.gap.width, "needed": answer.gap.needed}
+        narrowest = shapely.shortest_line(*(LineString(edge) for edge in answer.gap.edges))
+        gap = {
+            "edges": answer.gap.edges.tolist(),
+            "narrowest": shapely.get_coordinates(narrowest).tolist(),
+            "width": answer.gap.width,
+            "needed": answer.gap.needed,
+        }
     return {"spines": [cone.spine.tolist() for cone in answer.cones], "gap": gap}
 
 

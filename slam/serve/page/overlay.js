@@ -1,7 +1,7 @@
 // The overlay: what changes with every move of the pointer, drawn over the scene each frame it changes.
 
 import { dot, rings } from "./strokes.js";
-import { middleOf } from "./pointing.js";
+import { length, middleOf } from "./pointing.js";
 
 export function paintOverlay(canvas, camera, { book, shown, inks, thing, views, ends, answers, cross, ratio }) {
   const context = canvas.getContext("2d"), pixel = 1 / camera.scale;
@@ -126,7 +126,8 @@ function* between(poses) {
   }
 }
 
-function paintGap(context, { edges }, inks, pixel) {
+// The two walls that leave too little room, and how much there is between them.
+function paintGap(context, { edges, narrowest: [here, there], width, needed }, inks, pixel) {
   context.strokeStyle = inks.error;
   context.lineWidth = 4 * pixel;
   for (const [[x, y], [endX, endY]] of edges) {
@@ -135,6 +136,25 @@ function paintGap(context, { edges }, inks, pixel) {
     context.lineTo(endX, endY);
     context.stroke();
   }
+  context.setLineDash([5 * pixel, 5 * pixel]);
+  context.lineWidth = 2 * pixel;
+  context.beginPath();
+  context.moveTo(...here);
+  context.lineTo(...there);
+  context.stroke();
+  context.setLineDash([]);
+  context.save();
+  context.translate((here[0] + there[0]) / 2, (here[1] + there[1]) / 2);
+  context.scale(pixel, -pixel);
+  context.font = `600 12px ${inks.sans}`;
+  context.textAlign = "center";
+  context.lineWidth = 4;
+  context.strokeStyle = inks.surface;
+  context.fillStyle = inks.error;
+  const says = `${length(width)}, needs ${length(needed)}`;
+  context.strokeText(says, 0, -16);
+  context.fillText(says, 0, -16);
+  context.restore();
 }
 
 function paintEnd(context, [x, y], letter, inks, pixel) {

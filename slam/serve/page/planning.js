@@ -35,7 +35,7 @@ export class Planning {
   }
 
   put(end, place) {
-    this.ends[end] = place;
+    this.ends[end] = place.map((metres) => Math.round(1000 * metres) / 1000 + 0); // + 0: no minus before a zero
     if (end === "start" && !this.ends.goal) document.querySelector("input[name=end][value=goal]").checked = true;
     this.say(`${end} at ${spot(place)}`);
     this.ask();
