@@ -5,7 +5,7 @@ covariance, go through open3d, which stays behind this door.
 """
 
 import ctypes
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
@@ -60,6 +60,17 @@ class Alignment:
     residual: float
     matched: float
     firmness: float
+
+    def freed(self, metres: float) -> "Alignment":
+        """The same, with a doubt of so many metres more along the direction in which the place is known least.
+
+        Noisy normals and the wrong jambs pull along a corridor, too, and seem to know where it is.
+        """
+        along = np.zeros(3)
+        along[:2] = np.linalg.eigh(self.information[:2, :2])[1][:, 0]
+        pulled = self.information @ along  # Sherman–Morrison on the inverse: the information may be singular
+        lost = metres**2 / (1 + metres**2 * float(along @ pulled))
+        return replace(self, information=np.asarray(self.information - lost * np.outer(pulled, pulled)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,7 +29,8 @@ class VerificationSettings:
     confirmed: float = 0.75  # share of the visible submap that the scan confirms; larger refuses more
     through: float = 0.1  # share of it that the scan saw through; smaller refuses more
     residual: float = 0.035  # metres rms, or twice the surface's own spread; smaller refuses more
-    firmness: float = 0.05  # smallest over largest information on position; larger refuses long corridors
+    firmness: float = 0.05  # smallest over largest information on position; under it, nothing is known along corridors
+    slide: float = 1.0  # metres of doubt with which a scan in a corridor may be laid; larger takes another corridor's
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +66,12 @@ def close_loop(
         return f"only {len(faces.points)} old faces look this way"
     guess = Guess(start, np.zeros((3, 3)))
     found = register(percept.surface, LocalMap.of(faces), guess, settings.registration)
-    return _refusal(percept, found, faces, settings) or found
+    gone = float(np.hypot(*(found.pose_in_fixed - pose)[:2]))
+    if gone > window[0] + settings.close:
+        return f"it slid {gone:.1f} m, out of the {window[0] + settings.close:.1f} m in which it can be"
+    # In a corridor, the place along it is as doubtful as before.
+    held = found if found.firmness >= settings.firmness else found.freed(window[0] + settings.close)
+    return _refusal(percept, found, faces, window[0], settings) or held
 
 
 def _searched(
@@ -78,7 +84,9 @@ def _searched(
     return None if best is None else register_submaps(local, old, best.pose, settings.close)
 
 
-def _refusal(percept: Percept, found: Alignment, faces: Faces, settings: VerificationSettings) -> str | None:
+def _refusal(
+    percept: Percept, found: Alignment, faces: Faces, doubt: float, settings: VerificationSettings
+) -> str | None:
     seen = look(percept.fused, found.pose_in_fixed, faces, settings.visibility)
     widest = max(settings.residual, 2 * percept.surface.usual_spread)
     for value, limit, holds, sentence in (
@@ -95,8 +103,9 @@ def _refusal(percept: Percept, found: Alignment, faces: Faces, settings: Verific
             return f"{value:.0%} {sentence} (limit {limit:.0%})"
     if found.residual > widest:
         return f"the faces lie {found.residual * 100:.1f} cm apart (limit {widest * 100:.1f} cm)"
-    if found.firmness < settings.firmness:
-        return f"free to slide along one direction (firmness {found.firmness:.2f}, limit {settings.firmness:.2f})"
+    if found.firmness < settings.firmness and doubt > settings.slide:
+        firmness = f"firmness {found.firmness:.2f}, limit {settings.firmness:.2f}"
+        return f"free to slide along one direction ({firmness}) within {doubt:.1f} m (limit {settings.slide:.1f} m)"
     return None
 
 

@@ -12,7 +12,6 @@ import numpy as np
 from frontend.correlative_search import ScoreGrid, SearchSettings
 from frontend.local_map import Faces
 from frontend.matching import MatchingSettings, match_lost
-from frontend.registration import Alignment
 from frontend.rigid_motion import compose, inverse
 from frontend.scan import Floats, Integers
 from slam.keyframes import Keyframe, around
@@ -49,9 +48,12 @@ def relocalise(
         beside = around(old, number, verification.beside, verification.beside)
         there = Faces.together([keyframe.faces for keyframe in beside])
         found = close_loop(recent[-1].percept, start, submap, there, (0.0, 0.0), verification)
-        if isinstance(found, Alignment):
+        if isinstance(found, str):
+            reasons.append(found)
+        elif found.firmness < verification.firmness:
+            reasons.append(f"free to slide along one direction (firmness {found.firmness:.2f}), and nothing says where")
+        else:
             return Tried(number, found)
-        reasons.append(found)
     return Tried(number, reasons[-1] if reasons else "no constellation of its knots and no place for its surface")
 
 

@@ -38,7 +38,7 @@ class SessionSearch:
         pieces = self._pieces()
         piece = max(pieces, key=lambda one: len(pieces[one]) / (1 + self._vain[one]))
         self._vain[piece] += 1
-        self._pause = 1 + self._vain.total() // 10
+        self._pause = 2 + self._vain.total() // 10
         old = pieces[piece]
         tried = self._logbook.answer(partial(self._tried, old))
         scans = (graph.keyframes[old[tried.fixed]].scan, graph.keyframes[-1].scan)

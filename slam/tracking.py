@@ -29,6 +29,7 @@ class TrackingSettings:
     good: float = 0.8  # confirmed share under which a wider search is tried; larger searches more often
     firm: float = 0.05  # firmness under which a wider search is tried where less than `good` matches; larger does more
     poor: float = 0.4  # matched share under which, after that search, a scan is left to odometry; larger refuses more
+    alone: float = 0.5  # the same where only registration knows the place: more is needed, and the scan is astray
     window_metres: float = 0.4  # of the wider search; larger finds worse guesses and mistakes more
     window_radians: float = 0.25
     window_sigmas: float = 3.0  # of the guess's doubt that it covers, if that is wider; larger searches longer
@@ -95,15 +96,17 @@ def track(percept: Percept, last: Floats, move: Move, recent: list[Faces], setti
     if lost or _doubtful(found, seen, settings):
         found, seen = _wider(percept, local_map, prior, (found, seen), window, settings)
     astray = _astray(percept, found.matched, seen, settings)
-    if found.matched < settings.poor:
+    needed = settings.alone if lost else settings.poor
+    if found.matched < needed:
         reason = (
             f"only {found.matched:.0%} of {len(percept.surface.points)} surface points lie on the map "
-            f"({settings.poor:.0%} needed)"
+            f"({needed:.0%} needed)"
         )
-        # Where not even the wheels know, nobody does.
         return Placed(guess, by_wheels, found.matched, reason, astray or (reason if lost else None))
     if astray is not None:
         return Placed(guess, by_wheels, found.matched, astray, astray)
+    if lost and found.firmness < settings.firm:
+        found = found.freed(window[0])
     both, alone = (
         turned(np.asarray(np.linalg.inv(found.information + other), np.float64), -found.pose_in_fixed[2])
         for other in (prior.information, UNSEEN * np.eye(3))

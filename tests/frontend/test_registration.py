@@ -164,3 +164,10 @@ def test_whole_submaps_are_laid_on_each_other() -> None:
     error = between(frame, found)
     assert np.hypot(*error[:2]) < 0.01
     assert abs(error[2]) < np.radians(0.2)
+
+
+def test_a_freed_alignment_doubts_its_place_along_the_corridor_and_knows_the_rest_as_before() -> None:
+    information = np.diag([4e4, 1e6, 1e6])
+    found = Alignment(np.zeros(3), information, np.empty((0, 2), np.int64), 0.01, 1.0, 0.04)
+    covariance = np.linalg.inv(found.freed(0.7).information)
+    np.testing.assert_allclose(np.diag(covariance), [1 / 4e4 + 0.49, 1e-6, 1e-6], rtol=1e-6)

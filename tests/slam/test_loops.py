@@ -72,12 +72,26 @@ def test_walls_where_the_scan_looks_through_are_refused() -> None:
     assert "%" in refused
 
 
-def test_a_long_corridor_is_refused_because_it_slides() -> None:
+def in_corridor(window: tuple[float, float]) -> Alignment | str:
+    """A scan in a long corridor, laid on what was seen there half a metre before and behind."""
     rng = np.random.default_rng(2)
     here = np.array([30.0, 1.0, 0.0])
     percept = seen_at(corridor(), here, rng)
     old = faces_from(corridor(), [here - np.array([0.5, 0, 0]), here + np.array([0.5, 0, 0])], rng)
-    refused = close_loop(percept, here, Faces.placed(percept.surface, here), old, (0.3, 0.1), SETTINGS)
+    return close_loop(percept, here, Faces.placed(percept.surface, here), old, window, SETTINGS)
+
+
+def test_a_long_corridor_ties_across_and_in_heading_but_not_along() -> None:
+    found = in_corridor((0.3, 0.1))
+    assert isinstance(found, Alignment)
+    along, across, heading = np.sqrt(np.diag(np.linalg.inv(found.information)))
+    assert along > 0.3
+    assert across < 0.02
+    assert heading < 0.01
+
+
+def test_a_long_corridor_is_refused_where_the_doubt_is_wider_than_a_corridor() -> None:
+    refused = in_corridor((1.5, 0.1))
     assert isinstance(refused, str)
     assert "free to slide" in refused
 
