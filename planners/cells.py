@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planners.compiled import compiled
+from planners.compiled import compiled, kernel
 from planners.outline import Outline
 
 Floats = NDArray[np.float64]
@@ -27,7 +27,7 @@ class Walls(NamedTuple):
     margin: float
 
 
-@compiled
+@kernel
 def inside(ends: Floats, x: float, y: float) -> bool:
     """Whether a point that is on no edge lies in free space, by counting crossings."""
     odd = False
@@ -38,7 +38,7 @@ def inside(ends: Floats, x: float, y: float) -> bool:
     return odd
 
 
-@compiled
+@kernel
 def _outer_hull(outline: Outline, part: int, heading: float, half: float) -> Floats:
     """Points (3k, 2) whose hull contains a part at every heading within `half` of `heading`."""
     first, last = outline.first[part], outline.first[part + 1]
@@ -55,7 +55,7 @@ def _outer_hull(outline: Outline, part: int, heading: float, half: float) -> Flo
     return points
 
 
-@compiled
+@kernel
 def _support(points: Floats, x: float, y: float) -> float:
     farthest = -np.inf
     for k in range(points.shape[0]):
@@ -63,7 +63,7 @@ def _support(points: Floats, x: float, y: float) -> float:
     return farthest
 
 
-@compiled
+@kernel
 def _outer_faces(outline: Outline, part: int, points: Floats, box: Floats) -> Floats:
     """Directions and supports (f, 3) that bound the outer hull grown by the box's half sides.
 
@@ -92,7 +92,7 @@ def _outer_faces(outline: Outline, part: int, points: Floats, box: Floats) -> Fl
     return faces
 
 
-@compiled
+@kernel
 def _core_faces(outline: Outline, part: int, box: Floats) -> Floats:
     """Half-planes (f, 3) whose intersection lies in a part at every configuration of the box."""
     sides = outline.sides[outline.first[part] : outline.first[part + 1]]
@@ -109,7 +109,7 @@ def _core_faces(outline: Outline, part: int, box: Floats) -> Floats:
     return faces
 
 
-@compiled
+@kernel
 def _meets(faces: Floats, points: Floats, box: Floats, wall: Floats, margin: float) -> bool:
     """Whether a wall (4,) comes within `margin` of the grown outer hull: no direction separates them."""
     x0, y0, x1, y1 = wall[0] - box[0], wall[1] - box[1], wall[2] - box[0], wall[3] - box[1]
@@ -124,7 +124,7 @@ def _meets(faces: Floats, points: Floats, box: Floats, wall: Floats, margin: flo
     return bool(offset <= _support(points, x, y) + reach and -offset <= _support(points, -x, -y) + reach)
 
 
-@compiled
+@kernel
 def _pierces(faces: Floats, box: Floats, wall: Floats, margin: float) -> bool:
     """Whether a wall (4,) enters the core by more than `margin`: the part of it inside all half-planes is not empty."""
     x0, y0 = wall[0] - box[0], wall[1] - box[1]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planners.cells import EMPTY, MIXED, Walls
-from planners.compiled import compiled
+from planners.compiled import compiled, kernel
 from planners.guide import Guide, left
 from planners.outline import Outline
 from planners.state_queue import Queue, pop, push
@@ -69,7 +69,7 @@ def forget(front: Front) -> None:
         rows[:] = 0
 
 
-@compiled
+@kernel
 def _holds(tree: Tree, cell: int, pose: Floats, period: float) -> bool:
     """Whether a box holds a pose (3,); any heading if it is nan."""
     low, high = tree.lows[cell], tree.highs[cell]
@@ -78,12 +78,12 @@ def _holds(tree: Tree, cell: int, pose: Floats, period: float) -> bool:
     return bool(within and (np.isnan(heading) or low[2] <= heading <= high[2]))
 
 
-@compiled
+@kernel
 def _on_sheet(pose: Floats, sheet: int, query: Query) -> bool:
     return bool(np.isnan(pose[2]) or sheet == int(pose[2] // query.period) % query.sheets)
 
 
-@compiled
+@kernel
 def _step(tree: Tree, link: int, way: Floats, out: Floats) -> None:
     """The entry point `out` (3,) of the next box, on the shared face.
 
@@ -104,14 +104,14 @@ def _step(tree: Tree, link: int, way: Floats, out: Floats) -> None:
         out[2] = tree.lows[target, 2] if face % 2 == 1 else tree.highs[target, 2]
 
 
-@compiled
+@kernel
 def _within(tree: Tree, query: Query, front: Front, cell: int, channel: int) -> bool:
     """Whether a search of one channel, or of EVERYWHERE, may go through a box."""
     here = channel == EVERYWHERE or channel == front.channel[cell]
     return bool(here and np.isfinite(query.factors[tree.labels[cell]]))
 
 
-@compiled
+@kernel
 def _begin(tree: Tree, query: Query, front: Front, queue: Queue, stamp: int, channel: int) -> None:
     """Queue the states that hold the start."""
     for cell in range(tree.used[CELLS]):
@@ -127,7 +127,7 @@ def _begin(tree: Tree, query: Query, front: Front, queue: Queue, stamp: int, cha
                     push(queue, state, 0.0)
 
 
-@compiled
+@kernel
 def _expand(tree: Tree, query: Query, front: Front, queue: Queue, state: int, channel: int) -> None:
     """Queue the neighbours of a state, or move them forward; no way costs less than the guide has come nearer."""
     cell, sheet, stamp = state // query.sheets, state % query.sheets, front.seen[state]
@@ -173,7 +173,7 @@ def search(tree: Tree, query: Query, front: Front, queue: Queue, stamp: int, cha
     return -1, closed
 
 
-@compiled
+@kernel
 def _cut_deep(
     tree: Tree, outlines: tuple[Outline, Outline], walls: Walls, query: Query, front: Front, cell: int
 ) -> bool:
@@ -192,7 +192,7 @@ def _cut_deep(
     return True
 
 
-@compiled
+@kernel
 def _mark(tree: Tree, query: Query, front: Front, last: int, channel: int) -> None:
     """Number the boxes of the channel that ends with state `last`, and those beside it."""
     state = last
@@ -206,7 +206,7 @@ def _mark(tree: Tree, query: Query, front: Front, last: int, channel: int) -> No
         state = front.parent[state]
 
 
-@compiled
+@kernel
 def _cut_along(
     tree: Tree, outlines: tuple[Outline, Outline], walls: Walls, query: Query, front: Front, last: int
 ) -> int:
@@ -230,10 +230,11 @@ def refine(
 
     outlines: the robot's outer outline, by which boxes are EMPTY, and the core outline, by which they are FULL.
     """
-    stamp, channel = 0, EVERYWHERE
+    # As a plain number: the constant would have the searches compiled twice.
+    stamp, channel, everywhere = 0, EVERYWHERE, int(EVERYWHERE)
     while True:
         stamp, channel = stamp + 1, channel + 1
-        last, spare = search(tree, query, front, queue, stamp, EVERYWHERE)
+        last, spare = search(tree, query, front, queue, stamp, everywhere)
         if last < 0:
             return BLOCKED, -1, stamp
         _mark(tree, query, front, last, channel)

@@ -16,8 +16,18 @@ def compiled(function: Callable[Arguments, Result]) -> Callable[Arguments, Resul
 
     Division by zero gives inf or nan as in numpy: no hidden branches, and half the time to compile.
     """
-    machine_code: Callable[Arguments, Result] = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
-    return machine_code
+    return _machine_code(function, called_from_python=True)
+
+
+def kernel(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
+    """`function` compiled for compiled callers only, a quarter faster: no code to unpack Python's values."""
+    return _machine_code(function, called_from_python=False)
+
+
+def _machine_code(function: Callable[Arguments, Result], called_from_python: bool) -> Callable[Arguments, Result]:
+    options = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+    code: Callable[Arguments, Result] = numba.njit(**options, no_cpython_wrapper=not called_from_python)(function)
+    return code
 
 
 class _Watch(event.Listener):  # type: ignore[misc]

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planners.circular import joined, shared
-from planners.compiled import compiled
+from planners.compiled import compiled, kernel
 from planners.slices import Body, Slices
 from planners.spine_graph import SpineGraph, run_between
 from planners.way_in import STEPS, common, cost_of, departures, standing_arcs
@@ -17,7 +17,7 @@ FOOT, NODE, COST = STEPS + 6, STEPS + 8, STEPS + 9  # then where the foot is, th
 ROW = STEPS + 10
 
 
-@compiled
+@kernel
 def _foot(slices: Slices, cone: int, point: Floats) -> Floats:
     """Of the point of a spine nearest to `point` (2,): x, y, place (0 … 1) and squared distance."""
     begin, end, foot = slices.pieces[slices.first[cone]], slices.pieces[slices.first[cone + 1] - 1], np.empty(4)
@@ -29,7 +29,7 @@ def _foot(slices: Slices, cone: int, point: Floats) -> Floats:
     return foot
 
 
-@compiled
+@kernel
 def _slice_at(slices: Slices, cone: int, place: float) -> int:
     """The slice of a cone that holds a place (0 … 1) on its spine."""
     row = slices.first[cone]
@@ -38,7 +38,7 @@ def _slice_at(slices: Slices, cone: int, place: float) -> int:
     return int(row)
 
 
-@compiled
+@kernel
 def _along(slices: Slices, graph: SpineGraph, row: int, stop: int, head: Floats) -> Floats:
     """From a slice along its spine to a stop: rows (r, ROW) that begin as `head` (ROW,), one for each node and leg."""
     other, arc, both = int(graph.stops[stop, 2]), np.empty((1, 2)), np.empty((2, 2))
@@ -56,7 +56,7 @@ def _along(slices: Slices, graph: SpineGraph, row: int, stop: int, head: Floats)
     return rows[:count].copy()
 
 
-@compiled
+@kernel
 def _to_stops(body: Body, slices: Slices, graph: SpineGraph, cone: int, place: float, head: Floats) -> Floats:
     """Rows (r, ROW) from a place on a spine to the stops before and after it."""
     rows, piece, cost = np.empty((0, ROW)), np.empty(4), head[COST]
@@ -71,7 +71,7 @@ def _to_stops(body: Body, slices: Slices, graph: SpineGraph, cone: int, place: f
     return rows
 
 
-@compiled
+@kernel
 def _by_spine(body: Body, slices: Slices, graph: SpineGraph, pose: Floats, here: Floats, cone: int) -> Floats:
     """Rows (r, ROW) of the ways from a pose (3,) by one spine; here: the legal arcs at the pose."""
     foot, piece, head, rows = _foot(slices, cone, pose), np.empty(4), np.empty(ROW), np.empty((0, ROW))

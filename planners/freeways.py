@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planners.cells import inside
-from planners.compiled import compiled
+from planners.compiled import compiled, kernel
 from planners.insertion import order_of
 
 Floats = NDArray[np.float64]
@@ -39,7 +39,7 @@ def facing_pairs(ends: Floats, normals: Floats, offsets: Floats) -> Ints:
     return pairs[:count].copy()
 
 
-@compiled
+@kernel
 def _shadow(end: Floats, line: Floats, along: Floats) -> tuple[float, float]:
     """Interval on the spine of the part of an edge (4,) in front of a line (3,): normal and offset."""
     first = line[0] * end[0] + line[1] * end[1] - line[2]
@@ -55,7 +55,7 @@ def _shadow(end: Floats, line: Floats, along: Floats) -> tuple[float, float]:
     return min(one, two), max(one, two)
 
 
-@compiled
+@kernel
 def bisector(i: int, j: int, ends: Floats, lines: Floats) -> Floats:
     """Spine of a pair (8,): origin, direction, overlap begin and end on it, distance d of the walls as d0 + slope · t.
 
@@ -75,7 +75,7 @@ def bisector(i: int, j: int, ends: Floats, lines: Floats) -> Floats:
     return spine
 
 
-@compiled
+@kernel
 def _cuts(spine: Floats, ends: Floats) -> Floats:
     """Positions on a spine's line, increasing, where an edge crosses or touches it."""
     found = np.empty(2 * ends.shape[0])
@@ -93,7 +93,7 @@ def _cuts(spine: Floats, ends: Floats) -> Floats:
     return np.asarray(cuts[order_of(cuts)])
 
 
-@compiled
+@kernel
 def _stands_free(spine: Floats, low: float, high: float, ends: Floats, share: float) -> bool:
     """Whether somewhere between two positions no wall is nearer than `share` of the distance of the cone's own."""
     for sample in range(SAMPLES):

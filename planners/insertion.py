@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from planners.compiled import compiled
+from planners.compiled import kernel
 
 
-@compiled
+@kernel
 def order_of(values: NDArray[np.float64]) -> NDArray[np.int64]:
     """The rows (n,) of `values` (n,) from the least to the greatest; equal ones keep their order."""
     order = np.empty(values.size, np.int64)

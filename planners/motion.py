@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planners.compiled import compiled
+from planners.compiled import compiled, kernel
 from planners.insertion import order_of
 from planners.orientations import nearest
 from planners.outline import Outline, outline_of
@@ -41,7 +41,7 @@ def course_of(world: World, robot: Robot) -> Course:
     return Course(outline.corners, outline.first, outline.radius, world.edges.reshape(-1, 4).copy(), boxes)
 
 
-@compiled
+@kernel
 def _hull(points: Floats) -> Floats:
     """Corners (k, 2) of the hull of a few points, counter-clockwise: the chain from below and the one from above."""
     # Ties in x go by y; points nearer than 1e-9 in x may swap, which moves the hull by less than a grid step.
@@ -63,7 +63,7 @@ def _hull(points: Floats) -> Floats:
     return hull[: max(count, 1)].copy()
 
 
-@compiled
+@kernel
 def _hull_to_wall(hull: Floats, wall: Floats) -> float:
     """Distance between a convex hull (k, 2) and a wall (4,); 0 if they meet."""
     best, within, side = np.inf, True, np.empty(4)
@@ -77,7 +77,7 @@ def _hull_to_wall(hull: Floats, wall: Floats) -> float:
     return 0.0 if within else best
 
 
-@compiled
+@kernel
 def _swept(course: Course, part: int, motion: Floats) -> Floats:
     """Hull (k, 2) of the two placements of a part at the ends of a motion (2, 3)."""
     first, last = course.first[part], course.first[part + 1]
@@ -91,7 +91,7 @@ def _swept(course: Course, part: int, motion: Floats) -> Floats:
     return _hull(points)
 
 
-@compiled
+@kernel
 def bound(course: Course, motion: Floats, ceiling: float) -> float:
     """Lower bound of the clearance all along a motion (2, 3), at most `ceiling`; negative where it may collide."""
     turn, least = motion[1, 2] - motion[0, 2], ceiling
@@ -141,7 +141,7 @@ def keeps(course: Course, motion: Floats, clearance: float) -> bool:
     return True
 
 
-@compiled
+@kernel
 def _ceiling(course: Course, pose: Floats) -> float:
     """An upper bound of the clearance at a pose (3,): what the first corner keeps from the nearest wall."""
     piece, least = np.empty(4), np.inf

@@ -12,7 +12,7 @@ A set of headings is rows (k, 2) of disjoint increasing intervals in [0, 2π].
 import numpy as np
 from numpy.typing import NDArray
 
-from planners.compiled import compiled
+from planners.compiled import compiled, kernel
 from planners.insertion import order_of
 
 Floats = NDArray[np.float64]
@@ -21,7 +21,7 @@ CIRCLE = 2 * np.pi
 MOST = 24  # intervals in a set; further ones are given up, which is sound
 
 
-@compiled
+@kernel
 def _without(legal: Floats, count: int, low: float, high: float) -> int:
     """Take the open interval low … high out of a set in its buffer; returns the new count."""
     kept = 0
@@ -38,7 +38,7 @@ def _without(legal: Floats, count: int, low: float, high: float) -> int:
     return kept
 
 
-@compiled
+@kernel
 def _beside_line(polar: Floats, angle: float, room: float, legal: Floats) -> int:
     """Fill `legal` with the headings at which all corners stay within `room` of the piece, towards a line.
 
@@ -77,7 +77,7 @@ def intersected(first: Floats, second: Floats) -> Floats:
     return both[:count].copy()
 
 
-@compiled
+@kernel
 def _united(pieces: Floats, count: int) -> Floats:
     """The set that `count` intervals in any order make up."""
     order = order_of(pieces[:count, 0].copy())
@@ -93,7 +93,7 @@ def _united(pieces: Floats, count: int) -> Floats:
     return union[:kept].copy()
 
 
-@compiled
+@kernel
 def nearest(piece: Floats, wall: Floats) -> tuple[float, float, float]:
     """Vector from a wall (4,) to a piece (4,) between their nearest points, and its length; 0 if they cross."""
     best, best_x, best_y = np.inf, 0.0, 0.0
@@ -120,7 +120,7 @@ def nearest(piece: Floats, wall: Floats) -> tuple[float, float, float]:
     return best_x, best_y, best
 
 
-@compiled
+@kernel
 def room_before(piece: Floats, wall: Floats, normal: Floats, reach: float) -> float:
     """Distance along a unit `normal` (2,) from the part of a wall within reach, measured across it, up to a piece."""
     across_x, across_y = -normal[1], normal[0]
@@ -145,7 +145,7 @@ def room_before(piece: Floats, wall: Floats, normal: Floats, reach: float) -> fl
     return float(here - top)
 
 
-@compiled
+@kernel
 def _missing_wall(polar: Floats, radius: float, piece: Floats, wall: Floats, reach: float) -> Floats:
     """Headings at which a robot that slides along a piece misses a wall, by any of the separating lines."""
     pieces, legal, normal = np.empty((6 * MOST, 2)), np.empty((MOST, 2)), np.empty(2)

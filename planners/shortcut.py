@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from planners.compiled import compiled
+from planners.compiled import compiled, kernel
 from planners.motion import Course, keeps
 
 Floats = NDArray[np.float64]
@@ -11,13 +11,13 @@ Floats = NDArray[np.float64]
 GOLDEN = 0.6180339887498949  # successive multiples, modulo 1, fill an interval evenly
 
 
-@compiled
+@kernel
 def _cost(first: Floats, second: Floats, turn_cost: float) -> float:
     moved = np.hypot(second[0] - first[0], second[1] - first[1])
     return float(moved + turn_cost * abs(second[2] - first[2]))
 
 
-@compiled
+@kernel
 def _leaped(course: Course, poses: Floats, clearance: float) -> Floats:
     """Poses (k, 3) without those that a straight motion can leave out: from each, as far as doubling steps succeed."""
     kept, count, here, motion = np.empty_like(poses), 0, 0, np.empty((2, 3))
@@ -37,7 +37,7 @@ def _leaped(course: Course, poses: Floats, clearance: float) -> Floats:
     return kept[:count].copy()
 
 
-@compiled
+@kernel
 def _at(poses: Floats, lengths: Floats, place: float) -> tuple[int, Floats]:
     """The leg that holds a place, counted in cost from the start, and the pose (3,) there."""
     leg = min(max(int(np.searchsorted(lengths, place, side="right")) - 1, 0), poses.shape[0] - 2)
@@ -49,7 +49,7 @@ def _at(poses: Floats, lengths: Floats, place: float) -> tuple[int, Floats]:
     return leg, pose
 
 
-@compiled
+@kernel
 def _spliced(poses: Floats, first: int, last: int, motion: Floats) -> Floats:
     """Poses up to leg `first`, the motion (2, 3), and the poses after leg `last`."""
     shorter = np.empty((first + 1 + 2 + poses.shape[0] - last - 1, 3))

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planners.compiled import compiled
+from planners.compiled import compiled, kernel
 from planners.insertion import order_of
 from planners.orientations import legal_along, nearest
 
@@ -49,7 +49,7 @@ class Body(NamedTuple):
     caution: float
 
 
-@compiled
+@kernel
 def _near(spine: Floats, ends: Floats, reach: float) -> Floats:
     """The walls (k, 4) that come within `reach` of a spine, measured along and across it."""
     x, y = spine[2] - spine[0], spine[3] - spine[1]
@@ -71,7 +71,7 @@ def _near(spine: Floats, ends: Floats, reach: float) -> Floats:
     return kept[:count].copy()
 
 
-@compiled
+@kernel
 def _part(spine: Floats, begin: float, end: float) -> Floats:
     """The piece (4,) of a spine between two places 0 … 1."""
     piece = np.empty(4)
@@ -81,7 +81,7 @@ def _part(spine: Floats, begin: float, end: float) -> Floats:
     return piece
 
 
-@compiled
+@kernel
 def _seed(spine: Floats, near: Floats, body: Body, whole: float) -> tuple[float, float]:
     """Place and width of a slice with legal headings on the overlap of a spine's two walls; width 0 without."""
     length = np.hypot(spine[2] - spine[0], spine[3] - spine[1])
@@ -97,7 +97,7 @@ def _seed(spine: Floats, near: Floats, body: Body, whole: float) -> tuple[float,
     return 0.0, 0.0
 
 
-@compiled
+@kernel
 def _grown(spine: Floats, near: Floats, body: Body) -> tuple[Floats, Floats]:
     """Places (n, 2) and legal headings (n, INTERVALS, 2), padded with nan, of the slices around the overlap.
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planners.circular import joined, shared
-from planners.compiled import compiled
+from planners.compiled import compiled, kernel
 from planners.orientations import intersected
 from planners.slices import Slices
 
@@ -63,7 +63,7 @@ def crossings(spines: Floats) -> Floats:
     return found[:count].copy()
 
 
-@compiled
+@kernel
 def run_between(slices: Slices, first: int, last: int) -> Floats:
     """Arcs (k, 2) of headings legal in all slices from row `first` to row `last`."""
     legal = slices.legal[first, : slices.counts[first]]
@@ -74,7 +74,7 @@ def run_between(slices: Slices, first: int, last: int) -> Floats:
     return joined(legal)
 
 
-@compiled
+@kernel
 def _tightness(slices: Slices, first: int, last: int) -> float:
     """The greatest tightness among the slices from row `first` to row `last`."""
     greatest = 0.0

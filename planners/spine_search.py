@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
-from planners.compiled import compiled
+from planners.compiled import compiled, kernel
 from planners.spine_graph import SpineGraph
 from planners.state_queue import Queue, pop, push, queue_for
 
@@ -30,7 +30,7 @@ class Route(NamedTuple):
     closed: NDArray[np.bool_]
 
 
-@compiled
+@kernel
 def _left(landmarks: Floats, node: int, span: Floats) -> float:
     """What is left from a node, by at most SLACK too much.
 

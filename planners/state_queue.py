@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planners.compiled import compiled
+from planners.compiled import kernel
 
 Ints = NDArray[np.int32]
 
@@ -28,7 +28,7 @@ def queue_for(states: int) -> Queue:
     return Queue(np.zeros(states, dtype=np.int32), place, np.empty(states), np.zeros(1, dtype=np.int64))
 
 
-@compiled
+@kernel
 def push(queue: Queue, state: int, key: float) -> None:
     """Add a state, or move it forward if it waits with a greater key."""
     hole = queue.place[state]
@@ -44,7 +44,7 @@ def push(queue: Queue, state: int, key: float) -> None:
     queue.heap[hole], queue.place[state], queue.key[state] = state, hole, key
 
 
-@compiled
+@kernel
 def pop(queue: Queue) -> int:
     """Remove the state with the least key."""
     first, last = queue.heap[0], queue.heap[queue.size[0] - 1]

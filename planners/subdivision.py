@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planners.cells import FULL, MIXED, SMALL, SPLIT, Walls, label_box
-from planners.compiled import compiled
+from planners.compiled import compiled, kernel
 from planners.outline import Outline
 
 Floats = NDArray[np.float64]
@@ -89,7 +89,7 @@ def add_box(tree: Tree, outer: Outline, core: Outline, walls: Walls, ends: Float
     tree.used[NEAR] += count
 
 
-@compiled
+@kernel
 def _add_link(tree: Tree, source: int, target: int, face: int) -> int:
     link = tree.used[FREED]
     if link >= 0:
@@ -112,7 +112,7 @@ def connect(tree: Tree, source: int, target: int, face: int) -> None:
     tree.links[there, 1], tree.links[back, 1] = back, there
 
 
-@compiled
+@kernel
 def _drop_link(tree: Tree, owner: int, link: int) -> None:
     following, previous = tree.links[link, 2], tree.links[link, 3]
     if previous >= 0:
@@ -125,7 +125,7 @@ def _drop_link(tree: Tree, owner: int, link: int) -> None:
     tree.used[FREED] = link
 
 
-@compiled
+@kernel
 def has_room(tree: Tree, cell: int) -> bool:
     """Whether the rows suffice to cut `cell`."""
     spare_links = tree.links.shape[0] - tree.used[LINKS] > 4096
@@ -133,7 +133,7 @@ def has_room(tree: Tree, cell: int) -> bool:
     return bool(tree.labels.size - tree.used[CELLS] > 2 and spare_links and spare_near)
 
 
-@compiled
+@kernel
 def cut(tree: Tree, outer: Outline, core: Outline, walls: Walls, cell: int) -> None:
     """Halve a MIXED box; the halves are the two newest rows."""
     ends, axis, widest = np.empty((2, 3)), 0, 0.0
@@ -156,7 +156,7 @@ def cut(tree: Tree, outer: Outline, core: Outline, walls: Walls, cell: int) -> N
         connect(tree, lower, upper, 2 * axis + 1)
 
 
-@compiled
+@kernel
 def _hand_over(tree: Tree, cell: int, axis: int, middle: float) -> None:
     """Give the links of a cut box to the halves that they touch."""
     lower, upper = tree.used[CELLS] - 2, tree.used[CELLS] - 1

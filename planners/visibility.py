@@ -13,7 +13,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely import MultiPolygon, Polygon
 
-from planners.compiled import compiled
+from planners.compiled import compiled, kernel
 from planners.orientations import nearest
 from planners.raster import Raster, raster_of
 from planners.state_queue import Queue, pop, push, queue_for
@@ -76,7 +76,7 @@ def _reflex_corners(parts: list[Polygon]) -> Floats:
     return np.concatenate(rows)
 
 
-@compiled
+@kernel
 def _touches(corner: Floats, x: float, y: float) -> bool:
     """Whether the line from a corner towards x, y leaves both neighbours on one side."""
     dx, dy = x - corner[0], y - corner[1]
@@ -85,7 +85,7 @@ def _touches(corner: Floats, x: float, y: float) -> bool:
     return bool(one * two >= 0)
 
 
-@compiled
+@kernel
 def _strays(frame: Floats, wall: Floats, radius: float) -> bool:
     """Whether a wall (4,) lies wholly to one side of a piece, or before or behind it, by more than `radius`.
 
@@ -99,7 +99,7 @@ def _strays(frame: Floats, wall: Floats, radius: float) -> bool:
     return bool(max(one, two) < -radius or min(one, two) > frame[4] + radius)
 
 
-@compiled
+@kernel
 def sees(raster: Raster, radius: float, piece: Floats) -> bool:
     """Whether a piece (4,) keeps more than `radius` from all walls; the raster's cells on its way list those near."""
     columns, rows = raster.first.shape[0], raster.first.shape[1]
@@ -141,12 +141,12 @@ def _tangents(corners: Floats, raster: Raster, radius: float) -> Ints:
     return pairs[:count].copy()
 
 
-@compiled
+@kernel
 def _distance(x: float, y: float, point: Floats) -> float:
     return float(np.sqrt((x - point[0]) ** 2 + (y - point[1]) ** 2))
 
 
-@compiled
+@kernel
 def _depart(roadmap: Roadmap, ends: Floats, queue: Queue, cost: Floats) -> None:
     """Queue every corner that the start may see, as state n + i: it is looked at when its turn comes."""
     total, start, goal = roadmap.corners.shape[0], ends[0], ends[1]
@@ -157,7 +157,7 @@ def _depart(roadmap: Roadmap, ends: Floats, queue: Queue, cost: Floats) -> None:
             push(queue, total + i, cost[total + i] + _distance(x, y, goal))
 
 
-@compiled
+@kernel
 def _wraps(corner: Floats, before: Floats, x: float, y: float) -> bool:
     """Whether a way from `before` bends at a corner towards the hull on its way to x, y, as a taut string does."""
     dx, dy = corner[0] - before[0], corner[1] - before[1]
@@ -167,7 +167,7 @@ def _wraps(corner: Floats, before: Floats, x: float, y: float) -> bool:
     return bool(bend >= -slack if hull >= 0 else bend <= slack)
 
 
-@compiled
+@kernel
 def _leave(roadmap: Roadmap, i: int, ends: Floats, queue: Queue, cost: Floats, parent: Ints) -> None:
     """Queue the way from corner i to the goal, state 2n + i, if it is taut. ends: (2, 2) start and goal."""
     corner, goal = roadmap.corners[i], ends[1]
@@ -176,7 +176,7 @@ def _leave(roadmap: Roadmap, i: int, ends: Floats, queue: Queue, cost: Floats, p
         push(queue, 2 * roadmap.corners.shape[0] + i, cost[i] + _distance(corner[0], corner[1], goal))
 
 
-@compiled
+@kernel
 def _spread(roadmap: Roadmap, i: int, ends: Floats, queue: Queue, cost: Floats, parent: Ints) -> None:
     """Queue the corners joined to corner i: only taut ways are followed, for no other begins a shortest one.
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planners.circular import joined, shared
-from planners.compiled import compiled
+from planners.compiled import compiled, kernel
 from planners.orientations import intersected, legal_along, nearest
 from planners.slices import Body
 
@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 STEPS = 10  # numbers that hold the five arcs of a departure
 
 
-@compiled
+@kernel
 def _way(body: Body, piece: Floats) -> tuple[Floats, Floats, Floats]:
     """Legal arcs all along a piece (4,), on its first and on its last slice."""
     total = max(1, int(np.ceil(np.hypot(piece[2] - piece[0], piece[3] - piece[1]) / body.step)))
@@ -33,7 +33,7 @@ def _way(body: Body, piece: Floats) -> tuple[Floats, Floats, Floats]:
     return joined(everywhere), joined(first), joined(last)
 
 
-@compiled
+@kernel
 def cost_of(body: Body, piece: Floats) -> float:
     """Length of a piece (4,), times up to 1 + caution where it is tight."""
     room = body.width
