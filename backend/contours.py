@@ -83,10 +83,9 @@ def assemble(rings: list[Floats]) -> MultiPolygon:
     areas = shapely.area(outer)
     inside: list[list[Polygon]] = [[] for _ in outer]
     for hole in holes:
-        around = tree.query(shapely.Point(hole.exterior.coords[0]), predicate="intersects")
-        around = around[areas[around] > hole.area]  # an island in the hole may touch its rim
-        if len(around):
-            inside[int(around[np.argmin(areas[around])])].append(hole)
+        for around in tree.query(hole, predicate="intersects"):
+            if areas[around] > hole.area:  # an island in the hole may touch its rim
+                inside[int(around)].append(hole)
     whole = [ring.difference(shapely.union_all(cut)) if cut else ring for ring, cut in zip(outer, inside, strict=True)]
     return as_polygons(shapely.union_all(whole))
 

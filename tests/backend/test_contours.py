@@ -51,3 +51,10 @@ def test_a_ring_that_crosses_itself_a_little_is_still_outer() -> None:
     )
     for start in range(len(ring)):
         assert abs(assemble([np.roll(ring, start, axis=0)]).area - 16) < 0.01
+
+
+def test_a_hole_that_sticks_out_of_its_ring_a_little_is_still_cut() -> None:
+    outer = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
+    hole = np.array([[-0.001, 1.0], [0.5, 2.0], [3.0, 2.0], [3.0, 1.0]])
+    for start in range(4):
+        assert abs(assemble([outer, np.roll(hole, start, axis=0)]).area - (16 - Polygon(hole).area)) < 0.01
