@@ -6,10 +6,14 @@ import shlex
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from slam.settings import Settings
 from tests.stories.command_line import run
 
 ROOT = Path.cwd()
@@ -43,6 +47,21 @@ def test_every_command_of_a_page_runs(name: str, tmp_path: Path, monkeypatch: py
     (tmp_path / "datasets").symlink_to(ROOT / "datasets")
     monkeypatch.chdir(tmp_path)
     assert _follow(PAGES / name)
+
+
+def settings_tables(table: Any, path: str = "") -> Iterator[str]:
+    """What the page of settings says of every table of settings, in their order."""
+    for field in fields(table):
+        branch = getattr(table, field.name)
+        if is_dataclass(branch):
+            inside = f"{path}.{field.name}".lstrip(".")
+            yield f"### `[{inside}]`\n\n::: {type(branch).__module__}.{type(branch).__name__}\n"
+            yield from settings_tables(branch, inside)
+
+
+def test_every_table_of_settings_has_its_place_on_their_page() -> None:
+    page = (PAGES / "settings.md").read_text(encoding="utf-8")
+    assert [told for told in settings_tables(Settings()) if told not in page] == []
 
 
 def test_the_site_builds_without_a_warning(tmp_path: Path) -> None:
