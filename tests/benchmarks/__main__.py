@@ -6,6 +6,7 @@
 import importlib
 import importlib.util
 import json
+import math
 import sys
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from slam.result_folder import plain
 from slam.whole_output import write_whole
 
 HERE = Path(__file__).parent
@@ -38,8 +40,16 @@ def main(only: str | None) -> None:
         measured = [{"file": part, **row} for row in importlib.import_module(f"tests.benchmarks.{part}").rows()]
         show(part, measured)
         rows += measured
-        write_whole(RESULTS, json.dumps(rows, indent=1) + "\n")
+        write_whole(RESULTS, json.dumps(plain([_noted(row) for row in rows]), indent=1, allow_nan=False) + "\n")
     console.print(f"{len(rows)} rows in {RESULTS}")
+
+
+def _noted(row: Row) -> Row:
+    """A row whose value JSON cannot hold: it is written as null, and the note says what it was."""
+    value = row["value"]
+    if value is None or math.isfinite(value):
+        return row
+    return {**row, "note": f"measured {value}; {row['note']}".removesuffix("; ")}
 
 
 def show(part: str, rows: list[Row]) -> None:
