@@ -23,7 +23,8 @@ def main() -> None:
 
         if not isinstance(failure, FAILURES):
             raise
-        err.print(f"roomsketch: {' '.join(str(failure).split())}")
+        says = f"{failure.filename}: {failure.strerror}" if isinstance(failure, OSError) else str(failure)
+        err.print(f"roomsketch: {' '.join(says.split())}")
         sys.exit(1)
 
 

@@ -27,6 +27,7 @@ FAILURES = (
     MapScoreError,
     MergingError,
     OutputError,
+    PermissionError,  # whatever was named lies where this user may not look
     PlanError,
     PlanningError,
     RecordingError,

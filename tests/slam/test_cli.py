@@ -1,5 +1,10 @@
 import subprocess
 import sys
+from errno import EACCES
+from pathlib import Path
+from unittest.mock import Mock
+
+import pytest
 
 from slam.cli import COMMANDS
 from tests.stories.command_line import run
@@ -26,6 +31,13 @@ def test_every_command_is_listed_and_helps() -> None:
         name = command.replace("_", "-")
         assert name in listed
         assert f"roomsketch {name}" in run(name, "--help").out
+
+
+def test_a_place_where_one_may_not_look_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    barred = PermissionError(EACCES, "Permission denied", "secret/drive.log")
+    monkeypatch.setattr(Path, "exists", Mock(side_effect=barred))
+    told = run("view", "secret/drive.log")
+    assert (told.code, told.err) == (1, "roomsketch: secret/drive.log: Permission denied\n")
 
 
 def test_an_unknown_command_is_bad_usage() -> None:
