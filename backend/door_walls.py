@@ -21,6 +21,7 @@ class DoorWallSettings:
     skew: float = 0.35  # radians; larger takes gaps that stand more aslant to their walls for doors
     through: float = 0.30  # larger asks for deeper free ground on both sides of the opening
     wall: float = 0.30  # larger asks for a longer wall beyond the jambs of what only few views saw
+    turned: float = 0.80  # radians; larger looks for the wall of a door in more directions when a jamb is in the air
 
 
 def leads_through(free: MultiPolygon, jambs: Floats, settings: DoorWallSettings) -> NDArray[np.bool_]:
@@ -64,3 +65,35 @@ def goes_on(edges: Floats, openings: Floats, settings: DoorWallSettings) -> NDAr
     lines, jambs = shapely.linestrings(edges[None]), shapely.points(openings[:, :1])
     near = shapely.distance(jambs, lines) <= settings.beside
     return np.asarray((parallel & near & (on >= settings.beside)).any(axis=1))
+
+
+def on_the_wall(free: MultiPolygon, jambs: Floats, widths: tuple[float, float], settings: DoorWallSettings) -> Floats:
+    """Jambs (2, 2) of one opening, one of which may hang in free ground: a wide beam read short beside a corner.
+
+    The wall that goes on from the other jamb tells where it is: straight across from there. widths: least and most.
+    """
+    ends = shapely.points(jambs)
+    hanging = np.asarray(shapely.contains(free, ends) & (shapely.distance(free.boundary, ends) > settings.beside))
+    if np.count_nonzero(hanging) != 1:
+        return jambs
+    firm, loose = jambs[~hanging][0], jambs[hanging][0]
+    along = _wall_from(edges_of(free), firm, loose, settings)
+    hits = free.boundary.intersection(shapely.LineString([firm, firm + widths[1] * along]))
+    across = (shapely.get_coordinates(hits) - firm) @ along
+    across = across[across >= widths[0]]
+    if not across.size:
+        return jambs
+    return np.where(hanging[:, None], firm + across.min() * along, jambs)
+
+
+def _wall_from(edges: Floats, firm: Floats, loose: Floats, settings: DoorWallSettings) -> Floats:
+    """Unit vector (2,) from a firm jamb across the opening, along the wall that ends there; towards the loose one
+    where there is no such wall."""
+    towards = (loose - firm) / np.linalg.norm(loose - firm)
+    along = edges[:, 1] - edges[:, 0]
+    along = along * np.where(along @ towards < 0, -1.0, 1.0)[:, None]
+    length = np.maximum(np.linalg.norm(along, axis=1), 1e-9)
+    beyond = ((edges.mean(axis=1) - firm) @ towards < 0) & (along @ towards > np.cos(settings.turned) * length)
+    near = shapely.distance(shapely.Point(firm), shapely.linestrings(edges)) <= settings.beside
+    wall = np.sum(along[beyond & near], axis=0) if np.any(beyond & near) else towards
+    return np.asarray(wall / np.linalg.norm(wall))

@@ -4,7 +4,7 @@ A jamb of the map is the tip of a thin wall: seen along the line to its partner 
 sides, and a little way inside, the wall is no thicker than walls are.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from shapely import MultiPolygon
 
 from backend.contours import as_polygons
-from backend.door_walls import DoorWallSettings, edges_of, goes_on, leads_through, wall_beyond
+from backend.door_walls import DoorWallSettings, edges_of, goes_on, leads_through, on_the_wall, wall_beyond
 from backend.room_map import Door
 from backend.sight import Sight
 
@@ -60,6 +60,8 @@ def doors_of(
         np.concatenate([facing.view, reported.view]),
     )
     merged = [_merged(seen, group, sight) for group in _grouped(seen.jambs, settings.apart)]
+    widths = settings.narrowest, settings.widest
+    merged = [replace(door, jambs=on_the_wall(free, door.jambs, widths, settings.walls)) for door in merged]
     merged = [door for door, stays in zip(merged, _are_doors(free, merged, settings), strict=True) if stays]
     merged.sort(key=lambda door: tuple(door.jambs.mean(axis=0)))
     return tuple(Door(f"door {i + 1}", door.jambs, door.sure, door.views) for i, door in enumerate(merged))

@@ -5,7 +5,7 @@ import pytest
 from shapely import box
 
 from backend.contours import as_polygons
-from backend.door_walls import DoorWallSettings, edges_of, goes_on, leads_through, wall_beyond
+from backend.door_walls import DoorWallSettings, edges_of, goes_on, leads_through, on_the_wall, wall_beyond
 
 TWO_ROOMS = as_polygons(box(0, 0, 3, 4).union(box(3.1, 0, 6, 4)).union(box(2.9, 1.5, 3.2, 2.4)))
 DOOR = np.array([[[3.05, 1.5], [3.05, 2.4]]])
@@ -27,3 +27,15 @@ def test_the_wall_beyond_a_jamb_is_measured_within_a_metre_on_both_its_faces() -
 def test_a_wall_goes_on_from_a_door_and_not_from_a_place_in_the_room() -> None:
     edges = edges_of(TWO_ROOMS)
     assert goes_on(edges, np.concatenate([DOOR, IN_THE_ROOM]), DoorWallSettings()).tolist() == [True, False]
+
+
+def test_a_jamb_that_hangs_in_free_ground_is_put_where_the_wall_of_the_other_one_goes_on() -> None:
+    reported = np.array([[3.05, 1.5], [2.70, 2.15]])
+    placed = on_the_wall(TWO_ROOMS, reported, (0.55, 1.4), DoorWallSettings())
+    np.testing.assert_allclose(placed, [[3.05, 1.5], [3.05, 2.4]], atol=0.02)
+
+
+def test_jambs_on_the_wall_stay_and_so_do_two_in_the_air() -> None:
+    in_the_air = np.array([[1.0, 1.5], [1.0, 2.4]])
+    for jambs in (DOOR[0], in_the_air):
+        np.testing.assert_array_equal(on_the_wall(TWO_ROOMS, jambs, (0.55, 1.4), DoorWallSettings()), jambs)
