@@ -46,6 +46,8 @@ class FactorGraph:
         self._anchors: dict[int, int] = {}  # pose, and the place of its factor
         self.landmark_indices: list[int] = []
         self._walls: list[int] = []
+        self._stays: dict[int, int] = {}  # wall, and the place of the factor that keeps it from sliding
+        self._first_seen: dict[int, int] = {}  # wall, and the pose that saw it first
         self.ties: list[Tie] = []
         self._sightings: list[tuple[int, int, Floats, Floats]] = []
 
@@ -126,8 +128,8 @@ class FactorGraph:
         """A new wall at its first guess: a frame (3,) that lies on it, heads into it, and may slide along it."""
         self._insert(W(index), gtsam.Pose2(*frame))
         self._walls.append(index)
-        # Nothing ties the frame's place along the wall, so it stays where it is.
-        self._graph.add(gtsam.PriorFactorPose2(W(index), gtsam.Pose2(*frame), _noise(np.diag([1e6, 1.0, 1e6]))))
+        self._stays[index] = self._graph.size()
+        self._graph.add(_stay(index, gtsam.Pose2(*frame)))
 
     def add_wall_sighting(self, pose: int, wall: int, frame: Floats, covariance: Floats) -> None:
         """The wall's frame was seen at `frame` (3,) in the frame of `pose`, covariance (3, 3) in the wall's axes."""
@@ -135,6 +137,7 @@ class FactorGraph:
         huber = gtsam.noiseModel.mEstimator.Huber.Create(self.settings.landmark_width)
         noise = gtsam.noiseModel.Robust.Create(huber, _noise(covariance))
         self._graph.add(gtsam.BetweenFactorPose2(X(pose), W(wall), gtsam.Pose2(*frame), noise))
+        self._first_seen.setdefault(wall, pose)
 
     def belief(self, pose: int, walls: list[int], landmarks: list[int]) -> tuple[Floats, Floats]:
         """Mean (d,), joint covariance (d, d) of a pose, walls (3 each), landmarks (2 each), all in the room's axes."""
@@ -172,7 +175,7 @@ class FactorGraph:
         self._tree, self._taken, self._fresh = gtsam.ISAM2(_tree_parameters()), 0, gtsam.Values(self._values)
 
     def carry(self, poses: dict[int, Floats], freed: int) -> None:
-        """Poses (3,) are believed elsewhere, landmarks first seen from them go along, and `freed` loses its anchor.
+        """Poses (3,) are believed elsewhere, what was first seen from them goes along, and `freed` loses its anchor.
 
         What then ties them must be added, and all solved.
         """
@@ -184,6 +187,11 @@ class FactorGraph:
             if pose in moved:
                 seen = self._values.atPose2(X(pose)).transformTo(self._values.atPoint2(L(landmark)))
                 self._values.update(L(landmark), moved[pose].transformFrom(seen))
+        for wall, pose in self._first_seen.items():
+            if pose in moved:
+                frame = moved[pose].compose(self._values.atPose2(X(pose)).between(self._values.atPose2(W(wall))))
+                self._values.update(W(wall), frame)
+                self._graph.replace(self._stays[wall], _stay(wall, frame))
         for index, there in moved.items():
             self._values.update(X(index), there)
         gone, kept = self._anchors.pop(freed), gtsam.NonlinearFactorGraph()
@@ -191,7 +199,8 @@ class FactorGraph:
             if k != gone:
                 kept.add(self._graph.at(k))
         self._graph = kept
-        self._anchors = {index: place - (place > gone) for index, place in self._anchors.items()}
+        for places in (self._anchors, self._stays):
+            places.update({index: place - (place > gone) for index, place in places.items()})
 
     def solved(self) -> "FactorGraph":
         """The same factors with everything at its best; this graph keeps the estimates it has."""
@@ -234,6 +243,11 @@ def _tree_parameters() -> gtsam.ISAM2Params:
     parameters.setRelinearizeThreshold(0.02)
     parameters.relinearizeSkip = 1
     return parameters
+
+
+def _stay(wall: int, frame: gtsam.Pose2) -> gtsam.PriorFactorPose2:
+    """Nothing ties the place of a wall's frame along the wall, so it stays where it is."""
+    return gtsam.PriorFactorPose2(W(wall), frame, _noise(np.diag([1e6, 1.0, 1e6])))
 
 
 def _noise(covariance: Floats) -> gtsam.noiseModel.Base:

@@ -239,7 +239,7 @@ def test_a_wall_seen_twice_ties_the_way_towards_it_and_not_along_it() -> None:
 
 
 def test_a_carried_part_keeps_its_shape_and_then_hangs_on_what_ties_it() -> None:
-    """Two chains with anchors of their own; the second, with its landmark, is laid on the first and tied there."""
+    """Two chains with their own anchors; the second, with landmark and wall, is laid on the first and tied there."""
     true = twice_round(12)
     carry = np.array([30.0, -5.0, 1.0])
     graph = chained(true[:6])
@@ -253,13 +253,19 @@ def test_a_carried_part_keeps_its_shape_and_then_hangs_on_what_ties_it() -> None
     for k in (7, 8):
         seen = transform(np.array([[1.0, 1.0]]), inverse(true[k]))[0]
         graph.add_sighting(k, 0, seen, np.diag([0.02, 0.02]) ** 2)
+    wall = np.array([6.0, 0.5, 0.2])
+    graph.add_wall(0, compose(carry, wall))
+    for k in (7, 8):
+        graph.add_wall_sighting(k, 0, between(true[k], wall), np.diag([1e-4, 1e4, 1e-4]))
     graph.solve()
     graph.carry({k: compose(inverse(carry), pose) for k, pose in enumerate(graph.poses) if k >= 6}, freed=6)
     np.testing.assert_allclose(graph.landmarks[0], [1, 1], atol=1e-3)
+    np.testing.assert_allclose(graph.walls[0], wall, atol=1e-3)
     graph.add_loop(5, 6, between(true[5], true[6]), LOOP)
     graph.mend()
     graph.solve()
     assert worst(graph, true) < 1e-3
+    np.testing.assert_allclose(graph.walls[0], wall, atol=1e-3)
 
 
 def test_a_landmark_at_the_robots_own_place_is_refused() -> None:
