@@ -29,7 +29,8 @@ class TrackingSettings:
     good: float = 0.8  # confirmed share under which a wider search is tried; larger searches more often
     firm: float = 0.05  # firmness under which a wider search is tried where less than `good` matches; larger does more
     poor: float = 0.4  # matched share under which, after that search, a scan is left to odometry; larger refuses more
-    alone: float = 0.5  # the same where only registration knows the place: more is needed, and the scan is astray
+    guided: float = 0.3  # metres of doubt beyond which a guess is none, and only registration knows the place
+    alone: float = 0.5  # the same as `poor` there; where it knows nothing either, the scan is astray
     window_metres: float = 0.4  # of the wider search; larger finds worse guesses and mistakes more
     window_radians: float = 0.25
     window_sigmas: float = 3.0  # of the guess's doubt that it covers, if that is wider; larger searches longer
@@ -90,10 +91,11 @@ def track(percept: Percept, last: Floats, move: Move, recent: list[Faces], setti
     local_map = LocalMap.of(faces)
     prior = Guess(guess, np.asarray(np.linalg.inv(doubt), np.float64))
     window = _window(doubt, settings)
-    lost = window[0] > settings.window_metres or window[1] > settings.window_radians
+    wide = window[0] > settings.window_metres or window[1] > settings.window_radians
+    lost = window[0] > settings.window_sigmas * settings.guided
     found = register(percept.surface, local_map, prior, settings.registration)
     seen = look(percept.fused, found.pose_in_fixed, faces, settings.visibility)
-    if lost or _doubtful(found, seen, settings):
+    if wide or _doubtful(found, seen, settings):
         found, seen = _wider(percept, local_map, prior, (found, seen), window, settings)
     astray = _astray(percept, found.matched, seen, settings)
     needed = settings.alone if lost else settings.poor
