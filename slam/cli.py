@@ -3,11 +3,13 @@
 import ast
 import sys
 from importlib import import_module
+from importlib.metadata import version
 from pathlib import Path
+from typing import Annotated
 
 import typer
 
-from slam.commands.console import err
+from slam.commands.console import err, out
 
 COMMANDS = ("merge", "score", "plan", "draw", "view", "convert", "simulate", "floor_plan", "doctor")
 
@@ -43,7 +45,17 @@ def command_line(wanted: str) -> typer.Typer:
     return app
 
 
-def _roomsketch() -> None:
+def _tell_version(wanted: bool) -> None:
+    if wanted:
+        out.print(f"roomsketch {version('roomsketch')}")
+        raise typer.Exit
+
+
+def _roomsketch(
+    _: Annotated[
+        bool, typer.Option("--version", callback=_tell_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
     """From scans to one scored room map, and paths on it."""
 
 

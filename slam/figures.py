@@ -16,12 +16,12 @@ from shapely import MultiPolygon, Polygon
 from backend.contours import as_polygons
 from backend.room_map import MapEdgeKind, RoomMap, Verdict
 from backend.view import View
-from frontend.contour import Contour, EdgeKind
+from frontend.contour import EdgeKind
 from frontend.primal_sketch import KnotKind
 from frontend.rigid_motion import transform
 from frontend.scan import Floats
 from slam.boundary_scores import distances, edges_of
-from slam.figures_of_sensing import sensing_figures
+from slam.figures_of_sensing import edges_of_kind, sensing_figures
 from slam.map_scores import MapTruth, real_edges
 from slam.perception import Percept
 from slam.story import Story
@@ -83,7 +83,7 @@ def overlaid_views(story: Story) -> Figure:
     walls = [
         transform(piece.reshape(-1, 2), pose).reshape(-1, 2, 2)
         for percept, pose in zip(story.percepts, story.poses, strict=True)
-        if len(piece := _pieces(percept.contour, EdgeKind.REAL))
+        if len(piece := edges_of_kind(percept.contour, EdgeKind.REAL))
     ]
     _lines(axes, np.concatenate([np.empty((0, 2, 2)), *walls]), INK, width=0.6)
     _draw_drive(axes, story.poses)
@@ -199,14 +199,14 @@ def _draw_contour(axes: Axes, percept: Percept) -> None:
     contour = percept.contour
     axes.add_patch(_patch(contour.free_space, facecolor=FREE, edgecolor="none"))
     for kind, (label, ink, style) in EDGE_STYLES.items():
-        _lines(axes, _pieces(contour, kind), ink, label=label, style=style)
+        _lines(axes, edges_of_kind(contour, kind), ink, label=label, style=style)
     for jambs in percept.fused.jambs:
         axes.plot(*jambs.T, "o", color=OPENED, markersize=5)
 
 
 def _draw_sketch(axes: Axes, percept: Percept) -> None:
     knots = percept.sketch
-    _lines(axes, _pieces(percept.contour, EdgeKind.REAL), FAINT, label="surface")
+    _lines(axes, edges_of_kind(percept.contour, EdgeKind.REAL), FAINT, label="surface")
     _lines(axes, knots.lines.ends, SKETCH, label="line", width=1.8)
     for kind in KnotKind:
         chosen = knots.positions[knots.kinds == kind]
@@ -264,12 +264,6 @@ def _legend(panels: list[Axes]) -> None:
 
 def _views(story: Story) -> list[tuple[View, Floats]]:
     return [(percept.view, pose) for percept, pose in zip(story.percepts, story.poses, strict=True)]
-
-
-def _pieces(contour: Contour, kind: EdgeKind) -> Floats:
-    """(e, 2, 2) the contour's edges of one kind."""
-    starts = np.flatnonzero(contour.edge_kinds == kind)
-    return np.stack([contour.points[starts], contour.points[(starts + 1) % len(contour.points)]], axis=1)
 
 
 def _lines(

@@ -100,7 +100,7 @@ def before_and_after(percept: Percept) -> Figure:
         (EdgeKind.NO_RETURN, FAINT, "dotted", "no return, or inferred"),
         (EdgeKind.DOOR_ARC, OPENED, "solid", "arc of an opening"),
     ):
-        pieces = _edges(contour, kind)
+        pieces = edges_of_kind(contour, kind)
         if len(pieces):
             after.add_collection(
                 LineCollection(list(pieces), colors=ink, linestyles=style, linewidths=1.5, label=label)
@@ -169,7 +169,7 @@ def _length(chain: Floats) -> float:
     return float(np.sum(np.hypot(*np.diff(chain, axis=0).T)))
 
 
-def _edges(contour: Contour, kind: EdgeKind) -> Floats:
+def edges_of_kind(contour: Contour, kind: EdgeKind) -> Floats:
     """(e, 2, 2) the contour's edges of one kind."""
     starts = np.flatnonzero(contour.edge_kinds == kind)
     return np.stack([contour.points[starts], contour.points[(starts + 1) % len(contour.points)]], axis=1)

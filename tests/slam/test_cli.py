@@ -1,6 +1,7 @@
 import subprocess
 import sys
 from errno import EACCES
+from importlib.metadata import version
 from pathlib import Path
 from unittest.mock import Mock
 
@@ -38,6 +39,10 @@ def test_a_place_where_one_may_not_look_is_one_sentence(monkeypatch: pytest.Monk
     monkeypatch.setattr(Path, "exists", Mock(side_effect=barred))
     told = run("view", "secret/drive.log")
     assert (told.code, told.err) == (1, "roomsketch: secret/drive.log: Permission denied\n")
+
+
+def test_the_version_is_that_of_the_package() -> None:
+    assert run("--version").out == f"roomsketch {version('roomsketch')}\n"
 
 
 def test_an_unknown_command_is_bad_usage() -> None:
