@@ -56,7 +56,7 @@ def walls_beside(world: World, place: Floats) -> NDArray[np.int64]:
 def gap_of(world: World, start: Floats, goal: Floats, needed: float) -> Gap:
     """The narrowest place on the widest way between two points (2,), with the two edges beside it."""
     width, place = narrowest(world, start, goal)
-    return Gap(world.edges[walls_beside(world, place)], width, needed)
+    return Gap(world.edges[walls_beside(world, place)], width, needed, place)
 
 
 def largest_scale(answers: Callable[[float], Kind], low: float, steps: int) -> float:

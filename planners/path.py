@@ -63,11 +63,15 @@ class Cells:
 
 @dataclass(frozen=True, eq=False)
 class Gap:
-    """What stands in the way: two edges (2, 2, 2) of the world, their distance and the passage the robot needs."""
+    """What stands in the way: two edges (2, 2, 2) of the world, their distance and the passage the robot needs.
+
+    place: (2,) the narrowest on the widest way.
+    """
 
     edges: Floats
     width: float
     needed: float
+    place: Floats
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,7 +19,7 @@ from planners.world import World
 
 FREE, INK, PATH, ROBOT, CONE, SPINE = "#ffffff", "#1b1b1b", "#d55e00", "#d55e00", "#0b62a8", "#0b62a8"
 KINDS = ((EMPTY, "free", "#009e73"), (MIXED, "partly free", "#e8b800"), (SMALL, "too small to cut", "#d98c00"))
-COLLIDING = "#555555"
+COLLIDING, GAP = "#555555", "#c2002f"
 GHOSTS = 12  # placements of the robot drawn along a path
 DOTS_PER_INCH = 130
 
@@ -33,6 +33,7 @@ def draw_plans(answers: dict[str, Answer], world: World, robot: Robot, ends: tup
             _draw_cells(axes, answer.cells, robot)
         _draw_cones(axes, answer)
         _draw_path(axes, answer, robot)
+        _draw_gap(axes, answer)
         for place, sign, label in zip(ends, "os", ("start", "goal"), strict=True):
             axes.plot(*place[:2], sign, color=INK, markersize=6, label=label)
         path = answer.path
@@ -103,6 +104,15 @@ def _draw_path(axes: Axes, answer: Answer, robot: Robot) -> None:
         for part in shapely.get_parts(robot.at(pose)):
             ring = np.asarray(part.exterior.coords)
             axes.fill(*ring.T, facecolor=ROBOT, edgecolor=ROBOT, alpha=0.25, linewidth=0.6)
+
+
+def _draw_gap(axes: Axes, answer: Answer) -> None:
+    """The two walls that a proof names, with a ring around the place between them that is too narrow."""
+    if answer.gap is None:
+        return
+    label = f"{answer.gap.width:.3g} m wide, {answer.gap.needed:.3g} m needed"
+    axes.add_collection(LineCollection(list(answer.gap.edges), colors=GAP, linewidths=3, label=label, zorder=5))
+    axes.plot(*answer.gap.place, "o", markersize=22, markerfacecolor="none", markeredgecolor=GAP, markeredgewidth=2)
 
 
 def _ghosts(poses: Floats) -> NDArray[np.float64]:

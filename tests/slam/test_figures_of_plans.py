@@ -4,7 +4,7 @@ import numpy as np
 from shapely import box
 
 from planners.cells import EMPTY, FULL
-from planners.path import Answer, Cells, Cone, Path
+from planners.path import Answer, Cells, Cone, Gap, Path
 from planners.robot import Robot
 from planners.world import World
 from slam.figures_of_plans import draw_plans, png_of
@@ -28,3 +28,10 @@ def test_every_planner_has_a_panel_that_says_what_it_found() -> None:
     assert "1 spines" in first.get_legend_handles_labels()[1]
     assert {"1 boxes free", "1 boxes colliding throughout"} <= set(second.get_legend_handles_labels()[1])
     assert png_of(figure).startswith(b"\x89PNG")
+
+
+def test_the_gap_of_a_proof_is_marked_where_it_is() -> None:
+    gap = Gap(np.array([[[0.0, 0], [6, 0]], [[0, 2], [6, 2]]]), 2.0, 2.5, np.array([3.0, 1.0]))
+    axes = draw_plans({"configuration-space": Answer("no path", "", gap=gap)}, WORLD, Robot.disc(1.25), ENDS).axes[0]
+    assert "2 m wide, 2.5 m needed" in axes.get_legend_handles_labels()[1]
+    assert any(np.allclose(line.get_xydata(), [[3.0, 1.0]]) for line in axes.lines)
