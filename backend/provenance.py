@@ -93,7 +93,7 @@ def _views_by_edge(edge: Ints, view: Ints, count: int) -> list[Ints]:
     """Distinct views of every edge."""
     many = int(view.max(initial=0)) + 1
     owner, seen = np.divmod(np.unique(edge * many + view), many)
-    return np.split(seen, np.searchsorted(owner, np.arange(1, count)))
+    return np.split(seen, np.searchsorted(owner, np.arange(1, count)))[:count]
 
 
 def _spread(edge: Ints, offset: Floats, count: int) -> Floats:
