@@ -95,7 +95,9 @@ def _mirror_at(nearest: int, ranges: Floats, unread: Booleans, read: tuple[Scan,
     outer = aside - aside[0] < settings.outer, aside[-1] - aside < settings.outer
     flat = np.array([float(np.median(above[part])) > noise for part in outer])
     lost = flat & (steps > settings.late)
-    return [Mirror(float(scan.bearings[nearest] + foot), metres, run % n, *map(bool, lost))] if any(lost) else []
+    if not any(lost) or any((opens > 0) & ~flat):
+        return []
+    return [Mirror(float(scan.bearings[nearest] + foot), metres, run % n, *map(bool, lost))]
 
 
 def _run(ranges: Floats, around: int, band: tuple[float, float]) -> Integers:
