@@ -25,6 +25,7 @@ from backend.snapping import snap_ring
 from backend.wall_faces import WallFaces
 
 Floats = NDArray[np.float64]
+SQUARE = np.sqrt(2)  # how far the corner of a square wall's inset lies off, over the inset: sharper ones are cut there
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ def read_map(
     walls = as_polygons(shapely.union_all([free, *(thing.outline for thing in objects if not thing.inferred)]))
     doors = doors_of(free, walls, _reported(views), sight, settings.doors)
     objects = apart_from(objects, doors, settings.doors.walls.beside)
-    safety = as_polygons(free.buffer(-settings.inset, join_style="mitre"))
+    safety = as_polygons(free.buffer(-settings.inset, join_style="mitre", mitre_limit=SQUARE))
     deep = round(settings.deep / counts.cell)
     decided = Decisions(partial(_decisions, views, (mask, counts, deep), sight, (edges, objects)))
     leaks, told = alarms(free, contested, samples, sight, settings.panel)

@@ -97,7 +97,7 @@ def _between(ring: Floats, end: int, start: int) -> Floats:
 
 
 def _meeting(ring: Floats, first: Run, second: Run, faces: WallFaces, reach: float) -> Floats | None:
-    """Where two runs' faces meet (1, 2), if that is close to where one run ends and the other starts."""
+    """Where two runs' faces meet (1, 2), if the ring comes by within reach: faces at an acute angle meet far off it."""
     gap = _between(ring, first[1], second[0])
     one, two = faces.normals[first[2]], faces.normals[second[2]]
     across = float(one[0] * two[1] - one[1] * two[0])
@@ -105,5 +105,6 @@ def _meeting(ring: Floats, first: Run, second: Run, faces: WallFaces, reach: flo
         return None
     levels = float(one @ faces.centres[first[2]]), float(two @ faces.centres[second[2]])
     corner = np.array([levels[0] * two[1] - levels[1] * one[1], levels[1] * one[0] - levels[0] * two[0]]) / across
-    near = max(np.linalg.norm(corner - ring[first[1] - 1]), np.linalg.norm(corner - ring[second[0]])) < 3 * reach
+    traced = np.vstack([ring[first[1] - 1], gap, ring[second[0]]])
+    near = np.linalg.norm(traced - corner, axis=1).min() < reach
     return corner[None] if near else None

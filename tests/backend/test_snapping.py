@@ -3,6 +3,7 @@
 from itertools import pairwise
 
 import numpy as np
+import pytest
 import shapely
 import shapely.affinity
 from shapely import Polygon, box
@@ -63,3 +64,17 @@ def test_corners_of_a_view_move_along_their_beams_only() -> None:
     before, after = surfaces.ring - origin, snap_view(surfaces.ring, origin, surfaces, label, faces) - origin
     np.testing.assert_allclose(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], 0, atol=1e-9)
     assert np.abs(after[surfaces.corner, 0] - 2.013).max() < 0.005
+
+
+@pytest.mark.parametrize(("level", "slope"), [(1.56, 0.4), (1.48, 0.3)])
+def test_a_stray_face_past_a_walls_end_draws_no_spike(level: float, slope: float) -> None:
+    wall = Polygon([(0, 1.5), (1.8, 1.5), (1.5, 1.6), (0, 1.6)])
+    room = Polygon(shapely.get_coordinates(box(0.0, 0.0, 4.0, 3.0).difference(wall)))
+    corner = np.asarray(shapely.orient_polygons(room).exterior.coords)
+    rng = np.random.default_rng(0)
+    long = [pair for pair in pairwise(corner) if np.linalg.norm(pair[1] - pair[0]) > 0.5]
+    start = np.array([1.25, level + 0.5 * slope])
+    stray = wall_samples(start, start + np.array([1.6, -1.6 * slope]), 1, 0.002, rng)
+    faces = fuse_faces(joined(*(wall_samples(*pair, 4, 0.002, rng) for pair in long), stray), FaceSettings())
+    snapped = Polygon(snap_ring(traced(room), faces, 0.06))
+    assert shapely.hausdorff_distance(snapped.exterior, room.exterior, 0.05) < 0.06
