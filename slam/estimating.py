@@ -27,12 +27,14 @@ def estimated(
     poses = np.array([compose(solved[k], step) for k, step in graph.relative]).reshape(-1, 3)
     owners = np.array([k for k, _ in graph.relative], np.int64)
     sessions = np.array([keyframe.session for keyframe in graph.keyframes], np.int64)[owners]
+    roots = np.array([graph.sessions.root(keyframe.session) for keyframe in graph.keyframes], np.int64)
     # Outlines that a wide beam smeared must not pull at poses that arcs have placed.
     if all(keyframe.percept.arcs is None for keyframe in graph.keyframes):
-        used = np.flatnonzero(fitting).tolist()
-        moves = wheels.chain(poses, percepts, sessions.tolist(), used)
-        poses[used] = refined(poses[used], [percepts[scan] for scan in used], moves, settings.refinement)
-    roots = np.array([graph.sessions.root(keyframe.session) for keyframe in graph.keyframes], np.int64)
+        # Frame by frame: the wheels tie them to each other by nothing, and their first poses stay.
+        for root in np.unique(roots):
+            used = np.flatnonzero(fitting & (roots[owners] == root)).tolist()
+            moves = wheels.chain(poses, percepts, sessions.tolist(), used)
+            poses[used] = refined(poses[used], [percepts[scan] for scan in used], moves, settings.refinement)
     main = main_root(roots[owners])
     landmarks, landmark_ties = landmarks_in(factors, roots == main)
     told = [graph.sessions.told(pose, session) for pose, session in zip(poses, sessions.tolist(), strict=True)]
