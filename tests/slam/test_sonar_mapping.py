@@ -1,4 +1,4 @@
-"""Mapping with a wide beam: a sonar that drives through a simulated room is placed by arcs, far better than by wheels."""
+"""Mapping with a wide beam: a sonar that drives through a simulated room is placed by arcs, not by its wheels."""
 
 from dataclasses import replace
 from functools import cache
