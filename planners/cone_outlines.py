@@ -20,9 +20,10 @@ def cone_outlines(slices: Slices, ends: Floats, lines: Floats, pairs: Floats) ->
     """
     cones = []
     for cone, pair in enumerate(pairs.astype(int)):
-        pieces = slices.pieces[slices.first[cone] : slices.first[cone + 1]]
+        rows = slice(slices.first[cone], slices.first[cone + 1])
+        pieces = slices.pieces[rows]
         spine = np.stack([pieces[0, :2], pieces[-1, 2:]])
-        cones.append(Cone(spine, partial(_outline, pieces, ends, lines[pair])))
+        cones.append(Cone(spine, slices.legal[rows], partial(_outline, pieces, ends, lines[pair])))
     return tuple(cones)
 
 

@@ -41,14 +41,16 @@ class Path:
 
 @dataclass(frozen=True, eq=False)
 class Cone:
-    """A generalized cone: spine (2, 2) from end to end. drawing: makes its outline, which only figures need."""
+    """A generalized cone: spine (2, 2) from end to end, cut into n slices. legal (n, k, 2): the headings each slice
+    keeps, as increasing intervals in [0, 2π], padded with nan. drawing: makes its outline, looked at or not."""
 
     spine: Floats
+    legal: Floats
     drawing: Callable[[], Floats]
 
     @cached_property
     def outline(self) -> Floats:
-        """Corners (k, 2) of the free strip on both sides."""
+        """Corners (4n, 2) of the free strip: begin and end of every slice on one side, then back on the other."""
         return self.drawing()
 
 

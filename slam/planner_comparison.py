@@ -7,12 +7,15 @@ from typing import Any
 import numpy as np
 
 from frontend.scan import Floats
+from planners.beyond_cones import CIRCLE, beyond
 from planners.path import Answer, Path
 from planners.robot import Robot
 from planners.world import World
 from slam.planning import PLANNERS, PlanningSettings, answer_values
 
 CONES, CELLS = PLANNERS
+LOOK = 0.0625  # widths of the robot between two looks at a path; larger may step over what a short slice loses
+STANDING = 1e-6  # metres: a path that is shorter stays where it is
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,14 +53,14 @@ def verdict(trials: dict[str, Trial], robot: Robot) -> str:
     """How the answers differ, or why one planner finds a path and the other does not."""
     cones, cells = trials[CONES].answer, trials[CELLS].answer
     if cones.path is not None and cells.path is not None:
-        longer = 100 * (cones.path.length / max(cells.path.length, np.finfo(float).tiny) - 1)
         wider = cones.path.clearance - cells.path.clearance
         return (
-            f"{CONES} goes {abs(longer):.0f} % {'farther' if longer >= 0 else 'less far'} than {CELLS} and keeps "
+            f"{_lengths(cones.path.length, cells.path.length)} and keeps "
             f"{abs(wider):.3f} m {'more' if wider >= 0 else 'less'} clearance"
         )
     if cells.path is not None:
-        return _missed(cones, cells.path)
+        why = missed(cones, cells.path, robot)
+        return f"only {CELLS} finds a path, of clearance {cells.path.clearance:.3f} m: {why}; {CONES}: {cones.reason}"
     if cones.path is not None:
         return f"{CELLS} cannot tell at its resolution: {cells.reason}; {CONES} is not bound to one"
     if cells.kind == "no path":
@@ -65,13 +68,27 @@ def verdict(trials: dict[str, Trial], robot: Robot) -> str:
     return f"neither found a path, and none is ruled out: {CONES} is a heuristic, {CELLS} stops at its resolution"
 
 
-def _missed(cones: Answer, path: Path) -> str:
-    """Why there is no way along spines, beside a path that the other planner found."""
-    moves = np.diff(path.poses, axis=0)
-    together = (np.hypot(moves[:, 0], moves[:, 1]) > 0) & (np.abs(moves[:, 2]) > 0)
-    why = (
-        "the way asks the robot to turn while it moves, and along spines it turns at crossings only"
-        if together.any()
-        else "the way leaves the middle between walls, to which spines keep"
+def _lengths(cones: float, cells: float) -> str:
+    """How far one planner goes, metres, beside the other: a share of nothing says nothing."""
+    if max(cones, cells) < STANDING:
+        return f"{CONES}, like {CELLS}, stays where it is"
+    if cells < STANDING:
+        return f"{CONES} goes {cones:.3f} m where {CELLS} stays in its place"
+    longer = 100 * (cones / cells - 1)
+    return f"{CONES} goes {abs(longer):.0f} % {'farther' if longer >= 0 else 'less far'} than {CELLS}"
+
+
+def missed(cones: Answer, path: Path, robot: Robot) -> str:
+    """What the cones say to a path that the other planner found: where no slice of theirs keeps its heading."""
+    found = beyond(cones.cones, path.poses, LOOK * robot.width, robot.reach)
+    if found is None:
+        return "slices keep its headings all along, but no crossings or ways in join them"
+    x, y, heading = found.pose
+    if not found.slices:
+        return f"it passes ({x:.2f}, {y:.2f}), which none of the {len(cones.cones)} cones covers"
+    low, high = np.degrees(found.lost - CIRCLE * (heading // CIRCLE))
+    most = "the one slice there" if found.slices == 1 else f"the best of {found.slices} slices there"
+    return (
+        f"at ({x:.2f}, {y:.2f}) it holds the heading {np.degrees(heading % CIRCLE):.0f}°, but {most}, "
+        f"{found.width:.2f} m wide, loses the headings {low:.0f}° to {high:.0f}°"
     )
-    return f"only {CELLS} finds a path, of clearance {path.clearance:.3f} m: {why}; {CONES}: {cones.reason}"

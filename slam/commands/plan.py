@@ -18,7 +18,7 @@ from slam.figures_of_plans import draw_plans, png_of
 from slam.planner_comparison import Trial, compare, trial, trial_values, verdict
 from slam.planning import PLANNERS, PlanningSettings, parse_pose, paths_text
 from slam.settings import Settings
-from slam.whole_output import write_whole
+from slam.whole_output import OutputError, write_whole
 from slam.world_file import read_world
 
 NO_PATH = 3
@@ -54,6 +54,8 @@ def plan(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a sentence.")] = False,
 ) -> None:
     """Plan a path; exit code 0 with a path, 3 without, 1 on an error."""
+    if figure is not None and figure.suffix.lower() != ".png":
+        raise OutputError(f"{figure} does not end in .png, but the figure is a PNG picture: name it so")
     opinions = PlanningSettings() if settings is None else toml_file.load(settings, Settings).planning
     chosen = layer or (Layer.best if sigmas else Layer.safety)
     source = read_world(room, "safety" if chosen is Layer.safety else "free", sigmas)

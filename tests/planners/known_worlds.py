@@ -30,6 +30,11 @@ def corner(width: float) -> World:
     return World.from_obstacles(box(0, 0, 60, 60), [box(0, width, 60 - width, 60)])
 
 
+def diagonal() -> World:
+    """Two rooms of 32 x 32 that overlap in a square of 4 x 4: the only way is across its corners."""
+    return World.from_obstacles(box(0, 0, 60, 60), [box(0, 0, 28, 28), box(32, 32, 60, 60)])
+
+
 def corner_query(width: float) -> tuple[Floats, Floats]:
     """From the left end to the top end."""
     return np.array([12.0, width / 2, 0.0]), np.array([60 - width / 2, 48.0, np.pi / 2])

@@ -12,7 +12,9 @@ from slam.figures_of_plans import draw_plans, png_of
 WORLD = World.from_obstacles(box(0, 0, 6, 2), [])
 ENDS = np.array([1.0, 1.0, 0.0]), np.array([5.0, 1.0, 0.0])
 PATH = Path(np.stack(ENDS), 0.75, "")
-CONE = Cone(np.array([[0.5, 1.0], [5.5, 1.0]]), lambda: np.array([[0.5, 0.0], [5.5, 0.0], [5.5, 2.0], [0.5, 2.0]]))
+SPINE = np.array([[0.5, 1.0], [5.5, 1.0]])
+OUTLINE = np.array([[0.5, 0.0], [5.5, 0.0], [5.5, 2.0], [0.5, 2.0]])
+CONE = Cone(SPINE, np.array([[[0.0, 2 * np.pi]]]), lambda: OUTLINE)
 CELLS = Cells(np.array([[0.0, 0, 0], [5, 0, 0]]), np.array([[5.0, 2, 1], [6, 2, 1]]), np.array([EMPTY, FULL], np.int8))
 
 

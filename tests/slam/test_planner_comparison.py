@@ -1,14 +1,18 @@
 """What is said when both planners answer one question."""
 
+import re
+
 import numpy as np
 import pytest
 from shapely import box
 
+from frontend.scan import Floats
 from planners.path import Answer, Path
 from planners.robot import Robot
 from planners.world import World
-from slam.planner_comparison import CELLS, CONES, Trial, compare, trial_values, verdict
+from slam.planner_comparison import CELLS, CONES, Trial, compare, trial, trial_values, verdict
 from slam.planning import PlanningSettings
+from tests.planners.known_worlds import LONG, corner, corner_query, diagonal
 
 ROBOT = Robot.rectangle(1.0, 0.5)
 STRAIGHT = Path(np.array([[0, 0, 0], [4, 0, 0.0]]), 0.2, "")
@@ -26,11 +30,40 @@ def test_two_paths_are_told_apart_by_length_and_clearance() -> None:
     assert told == f"{CONES} goes 20 % less far than {CELLS} and keeps 0.300 m less clearance"
 
 
-@pytest.mark.parametrize(("path", "why"), [(BENT, "turn while it moves"), (STRAIGHT, "leaves the middle")])
-def test_a_way_that_spines_miss_is_explained_by_the_way_that_was_found(path: Path, why: str) -> None:
-    told = said(Answer("not found", "headings lost"), Answer("path", "", path))
-    assert why in told
-    assert told.endswith("headings lost")
+def test_who_stays_where_it_is_goes_no_share_of_nothing() -> None:
+    turn = Path(np.array([[0, 0, 0], [0, 0, 1.0]]), 0.5, "")
+    told = said(Answer("path", "", turn), Answer("path", "", turn))
+    assert told == f"{CONES}, like {CELLS}, stays where it is and keeps 0.000 m more clearance"
+    told = said(Answer("path", "", STRAIGHT), Answer("path", "", turn))
+    assert told.startswith(f"{CONES} goes 4.000 m where {CELLS} stays in its place and keeps")
+
+
+def only_cells_find(world: World, robot: Robot, *ends: Floats) -> str:
+    """What is said of a question that cones do not answer."""
+    trials = {name: trial(name, world, robot, (ends[0], ends[1]), PlanningSettings()) for name in (CONES, CELLS)}
+    assert (trials[CONES].answer.kind, trials[CELLS].answer.kind) == ("not found", "path")
+    return verdict(trials, robot)
+
+
+def test_a_heading_that_the_slices_of_a_bend_lose_is_named_with_place_and_width() -> None:
+    told = only_cells_find(corner(13), LONG, *corner_query(13))
+    found = re.search(r"at \((.*), (.*)\) it holds the heading (\d+)°.* 13.00 m wide, loses .* (\d+)° to (\d+)°", told)
+    assert found is not None
+    x, y, heading, low, high = map(float, found.groups())
+    assert x > 47 or y < 13, "in the bend"
+    assert low < heading < high
+
+
+@pytest.mark.parametrize(
+    ("radius", "says"),
+    [
+        (2.5, r"it passes \((2[89]|3[012])\.\d\d, (2[89]|3[012])\.\d\d\), which none of the \d+ cones covers"),
+        (1.0, "slices keep its headings all along, but no crossings or ways in join them"),
+    ],
+)
+def test_a_way_across_corners_is_beside_all_cones_or_where_none_cross(radius: float, says: str) -> None:
+    told = only_cells_find(diagonal(), Robot.disc(radius), np.array([10, 56, np.nan]), np.array([56, 10, np.nan]))
+    assert re.search(says, told), told
 
 
 @pytest.mark.parametrize(

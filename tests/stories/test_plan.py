@@ -135,3 +135,13 @@ def test_clearance_in_sigmas_needs_a_map_that_knows_them(plan_file: Path) -> Non
     told = plan(plan_file, "1,1", "9,5", *ROBOT, "--planner", "cones", "--clearance-sigmas", 2)
     assert told.code == 1
     assert "no wall edge with a spread" in told.err
+
+
+def test_a_figure_under_another_name_than_png_is_refused_before_anything_is_planned(
+    plan_file: Path, tmp_path: Path
+) -> None:
+    figure = tmp_path / "plans.txt"
+    told = plan(plan_file, "1,1", "9,5", *ROBOT, "--planner", "cones", "--figure", figure)
+    assert (told.code, told.out) == (1, "")
+    assert f"{figure} does not end in .png" in told.err
+    assert not figure.exists()
