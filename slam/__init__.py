@@ -1,8 +1,12 @@
 """The application: composes the stages, reads, simulates, scores, draws and is the command line.
 
-pipeline, perception, mapper and its parts tracking, wheels, pose_graph, loop_search, session_search, sonar_mapping and
-estimating: scans become poses and a map. settings: all opinions in one tree.
-recordings, readers, trajectory_file, room_file, toml_file, result_folder, whole_output: what is read and written.
+pipeline, perception: scans become poses and a map. mapper is made of tracking, keyframes, pose_graph, wheels,
+loop_search with loops, session_search with sessions and relocalisation, sonar_mapping with arc_tracking, logbook, and
+estimating with refining and main_map. door_tracking, wide_beam: what the merge is told beside the views.
+settings, mapper_settings: all opinions in one tree.
+recordings, recording_files, readers, checkpoint, trajectory_file, pose_graph_file, room_file, decision_file,
+world_file, toml_file, result_folder, exports, whole_output: what is read and written.
 scoring, map_scores, boundary_scores, object_scores, trajectory_scores: how good it is. simulation: worlds with truth.
-planning, figures, story, doctor, failures, cli: what a user sees.
+planning, planner_comparison, figures, figures_of_plans, figures_of_sensing, html_report, story, serve, doctor,
+failures, cli, commands: what a user sees.
 """
