@@ -125,7 +125,7 @@ def _through(cones: Cones, begin: Floats, end: Floats) -> Chain | str:
     into, out = _entries(cones, begin), _entries(cones, end)
     for rows, name in ((into, "start"), (out, "goal")):
         if not len(rows):
-            return f"no spine can be reached straight from the {name} at any heading that is legal on the way"
+            return f"by no spine can a crossing be reached from the {name} at a heading that is legal on the way"
     entry, leave = (np.full(len(cones.graph.arcs), np.inf) for _ in range(2))
     for metres, rows in ((entry, into), (leave, out)):
         np.minimum.at(metres, rows[:, NODE].astype(int), rows[:, COST])

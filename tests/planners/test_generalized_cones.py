@@ -42,7 +42,9 @@ def test_not_found_names_the_place_and_the_headings_that_are_lost() -> None:
 
 
 def test_a_corner_that_needs_both_motions_at_once_is_beyond_spines() -> None:
-    assert plan(corner(13), LONG, *corner_query(13), ConesSettings()).kind == "not found"
+    answer = plan(corner(13), LONG, *corner_query(13), ConesSettings())
+    assert answer.kind == "not found"
+    assert "by no spine can a crossing be reached from the start" in answer.reason, "it stands on one"
 
 
 def test_cones_are_drawn_inside_free_space_with_their_spines() -> None:
