@@ -3,7 +3,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planners.circular import joined, shared
+from planners.circular import joined
 from planners.orientations import intersected, legal_along
 from planners.robot import Robot
 from tests.planners.random_worlds import random_robot, random_world
@@ -39,10 +39,6 @@ def test_a_legal_heading_is_free_all_along_its_piece(seed: int) -> None:
                 assert shapely.distance(robot.at(np.append(place, heading)), world.free.boundary) > 0
 
 
-def test_sets_of_headings_intersect_and_join_across_zero() -> None:
+def test_sets_of_headings_intersect() -> None:
     first, second = np.array([[0.0, 1.0], [5.0, 2 * np.pi]]), np.array([[0.5, 5.5]])
     assert np.allclose(intersected(first, second), [[0.5, 1.0], [5.0, 5.5]])
-    assert np.allclose(joined(first), [[5.0, 2 * np.pi + 1]])
-    both = np.empty((2, 2))
-    assert shared(5.0, 7.5, 0.5, 5.5, both) == 2
-    assert np.allclose(both, [[5.0, 5.5], [0.5 + 2 * np.pi, 7.5]])
