@@ -9,6 +9,7 @@ from backend.wall_faces import WallFaces
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Run = tuple[int, int, int]  # first point, one past the last, face (−1 for none)
+SQUARE = np.sqrt(2)  # how far off the ring faces within reach of it meet at a right angle, over the reach
 
 
 def snap_view(ring: Floats, origin: Floats, surfaces: Surfaces, label: Ints, faces: WallFaces) -> Floats:
@@ -97,7 +98,7 @@ def _between(ring: Floats, end: int, start: int) -> Floats:
 
 
 def _meeting(ring: Floats, first: Run, second: Run, faces: WallFaces, reach: float) -> Floats | None:
-    """Where two runs' faces meet (1, 2), if the ring comes by within reach: faces at an acute angle meet far off it."""
+    """Where two runs' faces meet (1, 2), if the ring comes by: faces at an acute angle meet far off it."""
     gap = _between(ring, first[1], second[0])
     one, two = faces.normals[first[2]], faces.normals[second[2]]
     across = float(one[0] * two[1] - one[1] * two[0])
@@ -106,5 +107,5 @@ def _meeting(ring: Floats, first: Run, second: Run, faces: WallFaces, reach: flo
     levels = float(one @ faces.centres[first[2]]), float(two @ faces.centres[second[2]])
     corner = np.array([levels[0] * two[1] - levels[1] * one[1], levels[1] * one[0] - levels[0] * two[0]]) / across
     traced = np.vstack([ring[first[1] - 1], gap, ring[second[0]]])
-    near = np.linalg.norm(traced - corner, axis=1).min() < reach
+    near = np.linalg.norm(traced - corner, axis=1).min() < SQUARE * reach
     return corner[None] if near else None

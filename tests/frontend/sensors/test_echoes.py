@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from frontend.sensors.echoes import Echoes, diffraction_width, echoes_around, fresnel_share
@@ -93,6 +93,7 @@ def test_a_wedge_looks_the_same_from_both_of_its_faces(wedge: float, share: floa
         float(diffraction_width(np.array([wedge]), np.array([side]), 0.0065)[0])
         for side in (angle, wedge * np.pi - angle)
     ]
+    assume(max(ends) < 1e3)  # towards a face's own mirror image the theory has no bound
     assert ends[0] == pytest.approx(ends[1], rel=1e-6)
 
 
