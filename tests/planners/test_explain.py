@@ -1,0 +1,51 @@
+"""Why there is no path: the narrowest place on the widest way, whose width and walls are known by construction."""
+
+import numpy as np
+import pytest
+
+from planners.explain import gap_of, gap_sentence, largest_scale, narrowest, walls_beside
+from planners.path import Gap, Kind
+from tests.planners.known_worlds import door
+
+LEFT, RIGHT = np.array([15.0, 30.0]), np.array([85.0, 30.0])
+
+
+@pytest.mark.parametrize("width", [2.0, 9.0, 17.5])
+def test_a_door_is_as_narrow_as_it_was_built_and_that_is_in_the_door(width: float) -> None:
+    found, place = narrowest(door(width), LEFT, RIGHT)
+    assert 0 <= width - found < 10 * door(width).grid  # to which free space is rounded, on the safe side
+    assert 43 <= place[0] <= 57
+    assert place[1] == pytest.approx(30, abs=1e-3)
+
+
+def test_where_an_end_has_less_room_than_any_door_the_end_is_the_narrowest() -> None:
+    cramped = np.array([1.0, 30.0])
+    found, place = narrowest(door(9), cramped, RIGHT)
+    assert found == pytest.approx(2, abs=10 * door(9).grid)
+    assert np.array_equal(place, cramped)
+
+
+def test_the_gap_lies_between_the_two_walls_of_the_door() -> None:
+    gap = gap_of(door(9), LEFT, RIGHT, 12.0)
+    assert sorted(gap.edges[:, :, 1].mean(axis=1)) == pytest.approx([25.5, 34.5])
+    assert "the widest way is 9 m wide; needed are 12 m" in gap_sentence(gap)
+
+
+def test_the_walls_beside_a_place_are_on_either_side_of_it() -> None:
+    world = door(9)
+    first, second = world.edges[walls_beside(world, np.array([50.0, 27.0]))]
+    assert first[:, 1] == pytest.approx([25.5, 25.5])
+    assert second[:, 1] == pytest.approx([34.5, 34.5])
+
+
+def test_walls_that_part_altogether_are_told_so() -> None:
+    gap = Gap(np.zeros((2, 2, 2)), 0.0, 3.0, np.zeros(2))
+    assert "walls part them altogether" in gap_sentence(gap)
+
+
+def test_the_largest_scale_is_found_to_its_steps_and_a_close_call_ends_the_search() -> None:
+    def passes(scale: float) -> Kind:
+        return "path" if scale < 0.7 else "no path"
+
+    assert largest_scale(passes, 0.2, 12) == pytest.approx(0.7, abs=0.8 / 2**12)
+    assert largest_scale(lambda _: "undecided", 0.2, 12) == pytest.approx(0.6)
