@@ -32,7 +32,7 @@ class ConfigurationSpaceSettings:
 
     clearance: float = 0.0  # metres kept from every obstacle; larger is safer, longer, and passes fewer doors
     resolution: float = 0.02  # metres; smaller finds paths of less clearance (all above 2.42 of it) and takes longer
-    mixed_cost: float = 1.4  # per metre through a box not known; larger settles for longer detours sooner
+    mixed_cost: float = 1.7  # per metre through a box not known; larger settles for longer detours sooner
     turn_cost: float = 0.1  # metres per radian; larger avoids turning
     levels: int = 5  # halvings between two searches; larger searches less often and cuts more
     most_boxes: int = 400_000  # larger goes on longer, at 1 kB a box, before answering "undecided"
