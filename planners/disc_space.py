@@ -42,7 +42,7 @@ def query_disc(space: DiscSpace, start: Floats, goal: Floats) -> Answer:
         certificate = "every piece keeps more than the radius from every wall"
         return Answer("path", f"the shortest path, by {len(points) - 2} corners", Path(poses, clearance, certificate))
     if not parted(space.world, space.radius, start[:2], goal[:2]):
-        reason = f"a passage is within 0.3 % of the radius of {space.radius:g} m: too close to call"
+        reason = f"a passage is within 1 % of the radius of {space.radius:g} m: too close to call"
         return Answer("undecided", reason)
     return Answer("no path", f"places with {space.radius:g} m of room around them do not join start and goal")
 

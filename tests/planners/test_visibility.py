@@ -42,3 +42,18 @@ def test_where_a_disc_may_be_is_as_far_from_walls_as_its_radius_but_for_the_chor
     (left, right) = eroded(door(9).free, 5.0)
     for part in (left, right):
         assert 5 * np.cos(np.pi / 4 / QUARTER) <= part.distance(door(9).free.boundary) + 1e-6 <= 5 + 2e-6
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_no_place_with_room_enough_is_parted_from_itself(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    angles = np.linspace(0, 2 * np.pi, 300, endpoint=False)
+    walls = rng.uniform(9.9, 10.1, 300)[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+    world = World.from_free_space(shapely.Polygon(walls))
+    places = rng.uniform(-10, 10, (20_000, 2))
+    places = places[shapely.contains_xy(world.free, *places.T)]
+    room = shapely.distance(shapely.points(places), world.free.boundary)
+    for radius in (1.0, 4.0):
+        barely = places[(room > radius) & (room < 1.02 * radius)]
+        assert len(barely) > 5
+        assert not any(parted(world, radius, place, place) for place in barely[:40])
