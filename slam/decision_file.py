@@ -54,3 +54,5 @@ def read_decisions(path: Path) -> tuple[Decision, ...]:
         )
     except KeyError as missing:
         raise RoomFileError(f"{path}: a decision lacks or does not know {missing}") from missing
+    except (TypeError, ValueError, AttributeError) as damage:
+        raise RoomFileError(f"{path}: a decision's verdict or views cannot be read: {damage}") from damage

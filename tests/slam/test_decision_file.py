@@ -31,3 +31,13 @@ def test_a_file_of_other_features_is_refused(tmp_path: Path) -> None:
     path.write_text(json.dumps({"features": [{"properties": {"kind": "free"}, "geometry": point}]}))
     with pytest.raises(RoomFileError, match="verdict"):
         read_decisions(path)
+
+
+@pytest.mark.parametrize("says", [{"owners": ["a"]}, {"owners": None}, {"verdict": [1]}])
+def test_damaged_views_and_verdicts_are_one_sentence(tmp_path: Path, says: dict[str, object]) -> None:
+    path = tmp_path / "decisions.geojson"
+    whole = {"verdict": "kept", "owners": [0], "deciders": [1]} | says
+    line = {"type": "LineString", "coordinates": [[0, 0], [1, 0]]}
+    path.write_text(json.dumps({"features": [{"properties": whole, "geometry": line}]}))
+    with pytest.raises(RoomFileError, match="decision"):
+        read_decisions(path)
