@@ -4,7 +4,6 @@ end uses, and graduated non-convexity (Yang et al. 2020), which GTSAM has too.
 Both start from registrations alone, as they drift without loops, and are given the same false ones.
 """
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,7 +20,7 @@ from frontend.scan import Floats, Scan
 from slam.recordings import open_recording
 from slam.trajectory_scores import Spread, read_relations, relation_errors
 from tests.benchmarks.pose_stress import FALSE, SEED, UNCHANGED
-from tests.benchmarks.poses import BenchmarkError, Row, mapped, track_of
+from tests.benchmarks.poses import Row, mapped, recordings, track_of
 from tests.benchmarks.poses import row as figure
 
 FIRM = np.diag([1e-3, 1e-3, 1e-4]) ** 2
@@ -39,10 +38,7 @@ class Solved:
 
 def rows() -> list[Row]:
     """One row per figure. Raises BenchmarkError without the folder of real recordings."""
-    named = os.environ.get("ROOMSKETCH_DATA")
-    if named is None:
-        raise BenchmarkError("ROOMSKETCH_DATA names no folder of real recordings")
-    path = Path(named) / "intel" / "intel.log.gz"
+    path = recordings() / "intel" / "intel.log.gz"
     scans = open_recording(path).scans
     estimate = mapped(scans)[1]
     motions, true = parted(estimate.ties)

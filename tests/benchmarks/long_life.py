@@ -3,7 +3,6 @@
 The recordings lie in the folder that ROOMSKETCH_DATA names.
 """
 
-import os
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -22,17 +21,14 @@ from slam.readers.recording import Recording
 from slam.recordings import open_recording
 from slam.settings import Settings
 from slam.trajectory_scores import Spread, read_relations, relation_errors
-from tests.benchmarks.poses import WARM_UP, BenchmarkError, Row, odometry_of, row, track_of, wall_gaps
+from tests.benchmarks.poses import WARM_UP, Row, odometry_of, recordings, row, track_of, wall_gaps
 
 SETTINGS = Settings()
 
 
 def rows() -> list[Row]:
     """One row per figure. Raises BenchmarkError without the folder of real recordings."""
-    named = os.environ.get("ROOMSKETCH_DATA")
-    if named is None:
-        raise BenchmarkError("ROOMSKETCH_DATA names no folder of real recordings")
-    folder = Path(named)
+    folder = recordings()
     intel = folder / "intel" / "intel.log.gz"
     recording = open_recording(intel)
     mapped(recording.scans[:WARM_UP])

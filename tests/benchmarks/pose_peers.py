@@ -20,7 +20,7 @@ from frontend.scan import Floats, Scan
 from slam.recordings import open_recording
 from slam.trajectory_scores import Spread, read_relations, relation_errors
 from tests.benchmarks.pose_rivals import SYSTEMS
-from tests.benchmarks.poses import LOGS, WARM_UP, BenchmarkError, mapped, odometry_of, track_of
+from tests.benchmarks.poses import LOGS, WARM_UP, mapped, odometry_of, recordings, track_of
 
 RIVALS = Path(__file__).with_name("pose_rivals.py")
 TARGETS: dict[
@@ -46,10 +46,7 @@ class Result:
 
 def rows() -> list[Row]:
     """One row per figure. Raises BenchmarkError without the folder of real recordings."""
-    named = os.environ.get("ROOMSKETCH_DATA")
-    if named is None:
-        raise BenchmarkError("ROOMSKETCH_DATA names no folder of real recordings")
-    folder = Path(named) / "intel"
+    folder = recordings() / "intel"
     mapped(open_recording(folder / "intel.log.gz").scans[:WARM_UP])
     return [found for log in LOGS for found in log_rows(folder / f"{log}.log.gz")]
 

@@ -3,7 +3,6 @@
 The recordings lie in the folder that ROOMSKETCH_DATA names. All with the same settings as the undisturbed drive.
 """
 
-import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
@@ -24,7 +23,7 @@ from slam.perception import Percept
 from slam.recordings import open_recording
 from slam.settings import Settings
 from slam.trajectory_scores import Spread, read_relations, relation_errors
-from tests.benchmarks.poses import WARM_UP, BenchmarkError, Row, mapped, track_of
+from tests.benchmarks.poses import WARM_UP, Row, mapped, recordings, track_of
 from tests.benchmarks.poses import row as figure
 
 STANDS = 0.025  # metres that a stressed drive may be off on average
@@ -36,10 +35,7 @@ SEED = 1
 
 def rows() -> list[Row]:
     """One row per figure. Raises BenchmarkError without the folder of real recordings."""
-    named = os.environ.get("ROOMSKETCH_DATA")
-    if named is None:
-        raise BenchmarkError("ROOMSKETCH_DATA names no folder of real recordings")
-    path = Path(named) / "intel" / "intel.log.gz"
+    path = recordings() / "intel" / "intel.log.gz"
     scans = open_recording(path).scans
     mapped(scans[:WARM_UP])
     undisturbed = Run(path, scans)

@@ -48,12 +48,17 @@ class BenchmarkError(Exception):
     """A benchmark that cannot be run; the message says what is missing."""
 
 
-def rows() -> list[Row]:
-    """One row per figure. Raises BenchmarkError without the folder of real recordings."""
+def recordings() -> Path:
+    """The folder of real recordings. Raises BenchmarkError without one."""
     named = os.environ.get("ROOMSKETCH_DATA")
     if named is None:
         raise BenchmarkError("ROOMSKETCH_DATA names no folder of real recordings")
-    folder = Path(named)
+    return Path(named)
+
+
+def rows() -> list[Row]:
+    """One row per figure. Raises BenchmarkError without the folder of real recordings."""
+    folder = recordings()
     # First, as a new process begins with the peak memory of the one that started it.
     found = cost_rows(folder / "intel")
     mapped(open_recording(folder / "intel" / "intel.log.gz").scans[:WARM_UP])
