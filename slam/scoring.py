@@ -28,6 +28,7 @@ from slam.trajectory_scores import (
 )
 
 VISIBLE_RAYS = 3600  # a tenth of a degree
+STRAIGHT = 1e-6  # metres off a line at which a point of it is no corner
 
 Scores = dict[str, Any]
 
@@ -73,12 +74,12 @@ def relation_scores(folder: Path, relations: Path) -> Scores:
     }
 
 
-def map_scores(folder: Path, plan: Path, reference: Path | None) -> Scores:
-    """The map against the plan in the first pose's frame, and again after the best small alignment.
+def map_scores(folder: Path, truth: MapTruth) -> Scores:
+    """The map against the truth in the first pose's frame, and again after the best small alignment.
 
-    With true poses only what they could see counts, and the raw readings at our poses are scored beside the map.
+    The raw readings at our poses are scored beside the map.
     """
-    room, truth = read_room(folder / MAP), map_truth(folder, plan, reference)
+    room = read_room(folder / MAP)
     poses = read_trajectory(folder / TRAJECTORY).poses
     raw = raw_free_space(recording_of(read_report(folder)).scans, poses)
     return {
@@ -108,7 +109,8 @@ def visible(free: MultiPolygon, poses: Floats, reach: float) -> BaseGeometry:
     angles = np.linspace(-np.pi, np.pi, VISIBLE_RAYS, endpoint=False)
     rays = np.column_stack([np.cos(angles), np.sin(angles)])
     views = [pose[:2] + np.minimum(cast(surfaces, pose[:2], angles)[0], reach)[:, None] * rays for pose in poses]
-    return shapely.union_all([shapely.make_valid(Polygon(view)) for view in views]).intersection(free)
+    straight = shapely.simplify([Polygon(view) for view in views], STRAIGHT)  # rays along one wall add no corner
+    return shapely.union_all(shapely.make_valid(straight)).intersection(free)
 
 
 def overlap(ours: BaseGeometry, theirs: BaseGeometry) -> float:

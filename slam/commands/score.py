@@ -29,8 +29,9 @@ def score(
         err.print("nothing to score against: name a --truth, --poses or --relations")
     scores: dict[str, Any] = {"counts": report["counts"]}
     if truth is not None:
-        scores |= map_scores(result, truth, poses)
-        picture = draw_errors(read_room(result / MAP), map_truth(result, truth, poses), result / "figures")
+        known = map_truth(result, truth, poses)
+        scores |= map_scores(result, known)
+        picture = draw_errors(read_room(result / MAP), known, result / "figures")
         err.print(f"drawn: {picture}")
     if poses is not None:
         scores["poses"] = pose_scores(result, poses)

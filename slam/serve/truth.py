@@ -17,7 +17,7 @@ from backend.room_map import MapEdge, MapEdgeKind, RoomMap
 from frontend.scan import Floats, Scan
 from slam.result_folder import plain
 from slam.room_file import free_space
-from slam.scoring import map_scores, pose_scores
+from slam.scoring import map_scores, map_truth, pose_scores
 from slam.serve.messages import Arrays, pack, rings_of
 from slam.trajectory_file import read_trajectory
 
@@ -47,7 +47,7 @@ def truth_messages(truth: Truth, result: Path, room: RoomMap, scans: tuple[Scan,
     if truth.plan is not None:
         free, _ = free_space(truth.plan, "free")
         arrays |= {**rings_of("true", [free]), "errors": edge_errors(room.edges, free.boundary)}
-        scores |= map_scores(result, truth.plan, truth.poses)
+        scores |= map_scores(result, map_truth(result, truth.plan, truth.poses))
     if truth.poses is not None:
         scores["poses"] = pose_scores(result, truth.poses)
         arrays["places"] = _places(truth.poses, np.array([scan.time for scan in scans]))
