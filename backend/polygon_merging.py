@@ -94,8 +94,11 @@ class Merger:
     def follow(self, views: Sequence[View], poses: Floats) -> None:
         """Hold these views at poses (n, 3), numbered as they come, and no others: only what changed votes anew.
 
-        A view that moved by less than a millimetre, and no more seen from there, stays where it is.
+        A view that moved by less than a millimetre and turned by less than a tenth of a milliradian stays where it is.
+        Raises MergingError, before anything changed, where poses are missing or too many.
         """
+        if len(views) != len(poses):
+            raise MergingError(f"{len(views)} views cannot stand at {len(poses)} poses")
         for index in [index for index in self._placed if index >= len(views)]:
             self.remove(index)
         for index, (view, pose) in enumerate(zip(views, poses, strict=True)):
@@ -179,7 +182,9 @@ class Merger:
             if walls is not None and placed.view.wide is not None:
                 snapped, far[row] = up_to_mirrors(snapped, place(surfaces.far, poses[row]), origins[row], walls)
             ballot = self._ballot(surfaces, snapped, origins[row])
-            if not np.array_equal(ballot.free, placed.ballot.free):
+            if np.array_equal(ballot.free, placed.ballot.free):
+                ballot = placed.ballot  # what was cast is what can be taken back
+            else:
                 self._evidence.cast(placed.ballot, -1)
                 self._evidence.cast(ballot, 1)
             self._placed[index] = replace(placed, ballot=ballot, voted=poses[row])

@@ -2,7 +2,7 @@
 
 Nodes on a raster that leave the disc room are open. From the goal, shortest ways spread over open nodes and from there
 into walls, never out of them, so every place knows how far around the walls the goal is. No robot has a shorter way
-than the disc in it: the guide is a bound from below, within the few per cent of ways that keep to 16 directions.
+than the disc in it, so the guide leads well; it is no bound, as ways on a raster keep to 16 directions.
 """
 
 from typing import NamedTuple

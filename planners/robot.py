@@ -69,8 +69,14 @@ class Robot:
     @cached_property
     def inner(self) -> float:
         """Radius of the largest disc about the reference point within one of the parts; 0 if the point is in none."""
-        rims = [part for part in self.parts if len(part) > 2 and shapely.contains_xy(Polygon(part), 0, 0)]
-        return self.radius + max((Polygon(part).exterior.distance(shapely.Point(0, 0)) for part in rims), default=0.0)
+        here = shapely.Point(0, 0)
+        hulls = [MultiPoint(part).convex_hull for part in self.parts]
+        inside = [isinstance(hull, Polygon) and hull.covers(here) for hull in hulls]
+        depths = [
+            hull.boundary.distance(here) if within else -hull.distance(here)
+            for hull, within in zip(hulls, inside, strict=True)
+        ]
+        return max(0.0, self.radius + max(depths))
 
     @cached_property
     def width(self) -> float:

@@ -42,6 +42,9 @@ def decisions_text(decisions: Iterable[Decision]) -> str:
 def read_decisions(path: Path) -> tuple[Decision, ...]:
     """The decisions that `decisions_text` wrote. Raises RoomFileError where the file holds anything else."""
     verdicts = {word: verdict for verdict, word in WORDS.items()}
+    features = read_features(path)
+    if odd := {piece.geom_type for piece, _ in features} - {"LineString"}:
+        raise RoomFileError(f"{path}: a decision is about a line, not a {min(odd)}")
     try:
         return tuple(
             Decision(
@@ -50,7 +53,7 @@ def read_decisions(path: Path) -> tuple[Decision, ...]:
                 np.array(says["owners"], dtype=np.int64),
                 np.array(says["deciders"], dtype=np.int64),
             )
-            for piece, says in read_features(path)
+            for piece, says in features
         )
     except KeyError as missing:
         raise RoomFileError(f"{path}: a decision lacks or does not know {missing}") from missing

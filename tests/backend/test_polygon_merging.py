@@ -82,3 +82,12 @@ def test_a_map_that_follows_its_views_is_the_map_of_these_views() -> None:
 def test_a_view_that_is_not_in_the_map_cannot_be_removed() -> None:
     with pytest.raises(MergingError, match="never added"):
         Merger().remove(3)
+
+
+def test_views_without_poses_are_refused_before_anything_changed() -> None:
+    merger = Merger()
+    view = view_of(empty_room(), np.array([3.0, 2.0, 0.0]), Rays(), np.random.default_rng(0))
+    with pytest.raises(MergingError, match="2 views cannot stand at 1 poses"):
+        merger.follow([view, view], np.zeros((1, 3)))
+    with pytest.raises(MergingError, match="one view at least"):
+        merger.result()

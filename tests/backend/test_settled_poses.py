@@ -47,3 +47,14 @@ def test_a_forgotten_view_settles_like_a_new_one() -> None:
     looks.forget(7)
     moved = looks.settled(LOCAL, INDEX, PLACED) - stood
     assert np.flatnonzero(np.abs(moved).max(axis=1)).tolist() in ([7], [])
+
+
+def test_a_view_that_moves_twice_is_one_that_changed() -> None:
+    looks = SettledPoses(SettleSettings())
+    before = looks.settled(LOCAL, INDEX, PLACED)
+    moved = PLACED.copy()
+    for shift in (0.01, -0.01):
+        looks.forget(7)
+        moved[7, 0] += shift
+        after = looks.settled(LOCAL, INDEX, moved)
+    np.testing.assert_array_equal(np.delete(after, 7, axis=0), np.delete(before, 7, axis=0))

@@ -53,3 +53,9 @@ def test_the_disc_inside_is_as_wide_as_the_sides_leave_it_and_none_without_the_r
     assert Robot.rectangle(20, 8).inner == pytest.approx(4)
     assert Robot.disc(0.3).inner == pytest.approx(0.3)
     assert Robot.polygons(ELL + 10).inner == 0
+
+
+def test_a_rounded_part_beside_the_reference_point_holds_only_the_disc_that_its_rim_leaves() -> None:
+    part = np.array([[1.0, 0.0], [2.0, 0.0], [2.0, 0.1]])
+    assert Robot((part,), 0.3).inner == 0
+    assert Robot((part,), 1.2).inner == pytest.approx(0.2)

@@ -28,9 +28,11 @@ def test_decisions_come_back_with_their_views(tmp_path: Path) -> None:
 def test_a_file_of_other_features_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "decisions.geojson"
     point = {"type": "Point", "coordinates": [0, 0]}
-    path.write_text(json.dumps({"features": [{"properties": {"kind": "free"}, "geometry": point}]}))
-    with pytest.raises(RoomFileError, match="verdict"):
-        read_decisions(path)
+    line = {"type": "LineString", "coordinates": [[0, 0], [1, 0]]}
+    for place, told in ((point, "not a Point"), (line, "verdict")):
+        path.write_text(json.dumps({"features": [{"properties": {"kind": "free"}, "geometry": place}]}))
+        with pytest.raises(RoomFileError, match=told):
+            read_decisions(path)
 
 
 @pytest.mark.parametrize("says", [{"owners": ["a"]}, {"owners": None}, {"verdict": [1]}])
