@@ -70,6 +70,18 @@ def test_a_wall_known_badly_keeps_farther_away_than_one_known_well() -> None:
     assert 0.1 <= 10 - top < 0.102
 
 
+@given(st.floats(0, 2 * np.pi), st.floats(0.05, 2.0), st.floats(0.1, 5.0))
+@settings(max_examples=25, deadline=None)
+def test_around_the_ends_of_a_wall_it_is_a_few_percent_farther_and_never_nearer(
+    angle: float, clearance: float, length: float
+) -> None:
+    wall = np.array([[0, 0], [length * np.cos(angle), length * np.sin(angle)]])
+    world = World.from_free_space(box(-20, -20, 20, 20)).keep_away(wall[None], np.array([clearance]))
+    edge, line = world.free.geoms[0].interiors[0], shapely.linestrings(wall)
+    assert shapely.distance(line, edge) >= clearance
+    assert shapely.distance(line, shapely.points(edge.coords)).max() < 1.083 * clearance + 1e-5
+
+
 def test_a_world_without_free_space_is_refused() -> None:
     with pytest.raises(WorldError, match="no free space"):
         World.from_obstacles(box(0, 0, 1, 1), [box(-1, -1, 2, 2)])
