@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 def cone_outlines(slices: Slices, ends: Floats, lines: Floats, pairs: Floats) -> tuple[Cone, ...]:
     """Every cone, to be outlined when it is looked at: as far as its own two walls reach, or another obstacle.
 
-    ends (m, 4) and lines (m, 3), normals and offsets, of the walls; pairs (k, 2) of walls.
+    ends (m, 4) of the walls; lines (f, 3), normals and offsets, of the faces, and pairs (k, 2) of them.
     """
     cones = []
     for cone, pair in enumerate(pairs.astype(int)):

@@ -6,11 +6,13 @@ of an edge the side goes on parallel to the spine, and the spine goes on until a
 """
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from planners.cells import inside
 from planners.compiled import compiled, kernel
 from planners.insertion import order_of
+from planners.world import World
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -18,20 +20,36 @@ Ints = NDArray[np.int32]
 SAMPLES = 12  # places along the overlap where a cone's own walls may be the nearest
 
 
+def faces_of(world: World, tolerance: float) -> tuple[Floats, Floats]:
+    """The walls as cones are made from them: faces (f, 4) with their lines (f, 3), unit normals and offsets.
+
+    Corners that stand out by less than `tolerance` metres are left out: each of their edges would face every other
+    across the room. Only spines come from faces; what is legal on them is asked of the walls themselves.
+    """
+    rings = [
+        shapely.get_coordinates(ring)
+        for ring in shapely.get_rings(shapely.get_parts(shapely.simplify(world.free, tolerance)))
+    ]
+    ends = np.concatenate([np.column_stack([ring[:-1], ring[1:]]) for ring in rings])
+    along = ends[:, 2:] - ends[:, :2]
+    normals = np.column_stack([-along[:, 1], along[:, 0]]) / np.linalg.norm(along, axis=1, keepdims=True)
+    return ends, np.column_stack([normals, np.einsum("ij,ij->i", normals, ends[:, :2])])
+
+
 @compiled
-def facing_pairs(ends: Floats, normals: Floats, offsets: Floats) -> Ints:
+def facing_pairs(ends: Floats, lines: Floats) -> Ints:
     """Pairs (k, 2) of edges that face each other, each with an end strictly in front of the other's line."""
     total = ends.shape[0]
     pairs = np.empty((total * (total - 1) // 2, 2), dtype=np.int32)
     count = 0
     for i in range(total):
-        x, y, c = normals[i, 0], normals[i, 1], offsets[i]
+        x, y, c = lines[i, 0], lines[i, 1], lines[i, 2]
         for j in range(i + 1, total):
-            if x * normals[j, 0] + y * normals[j, 1] >= 0:
+            if x * lines[j, 0] + y * lines[j, 1] >= 0:
                 continue
             if max(x * ends[j, 0] + y * ends[j, 1], x * ends[j, 2] + y * ends[j, 3]) <= c:
                 continue
-            u, v, d = normals[j, 0], normals[j, 1], offsets[j]
+            u, v, d = lines[j, 0], lines[j, 1], lines[j, 2]
             if max(u * ends[i, 0] + v * ends[i, 1], u * ends[i, 2] + v * ends[i, 3]) <= d:
                 continue
             pairs[count, 0], pairs[count, 1] = i, j
@@ -114,15 +132,16 @@ def _stands_free(spine: Floats, low: float, high: float, ends: Floats, share: fl
 
 
 @compiled
-def spines(pairs: Ints, ends: Floats, lines: Floats, width: float, share: float) -> Floats:
-    """Rows (k, 8): both ends of a free run of a spine, its edges i and j, and the overlap's begin and end along it.
+def spines(pairs: Ints, faces: Floats, lines: Floats, ends: Floats, width: float, share: float) -> Floats:
+    """Rows (k, 8): both ends of a free run of a spine, its faces i and j, and the overlap's begin and end along it.
 
-    Several rows for a pair whose spine is cut within the overlap; none if it is nowhere `width` wide.
+    faces (f, 4) with their lines (f, 3) make the spines, walls (m, 4) from `ends` to end cut them. Several rows for a
+    pair whose spine is cut within the overlap; none if it is nowhere `width` wide.
     """
     rows = np.empty((pairs.shape[0] + 16, 8))
     count = 0
     for k in range(pairs.shape[0]):
-        spine = bisector(pairs[k, 0], pairs[k, 1], ends, lines)
+        spine = bisector(pairs[k, 0], pairs[k, 1], faces, lines)
         widest = 2 * (spine[6] + max(spine[7] * spine[4], spine[7] * spine[5]))
         if spine[4] >= spine[5] or widest < width:
             continue

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from planners.chains import Chain, entered, motion_of, straight, threaded
 from planners.cone_outlines import cone_outlines
 from planners.entrances import COST, NODE, entrances
-from planners.freeways import facing_pairs, spines
+from planners.freeways import faces_of, facing_pairs, spines
 from planners.lost_headings import why_not
 from planners.motion import Course, clearance_of, course_of
 from planners.path import Answer, Cone, Path
@@ -32,6 +32,9 @@ class ConesSettings:
     """Opinions of the generalized-cones planner."""
 
     slice_length: float = 0.5  # in widths of the robot; larger is faster to prepare and loses orientations
+    detail: float = (
+        0.05  # in widths of the robot: corners that walls are smoothed by; larger is faster, misses tight ways
+    )
     crowding: float = 0.2  # a cone needs a place where no wall is nearer than this share of its own; larger: fewer
     caution: float = 1.0  # extra cost per metre in the tightest passages; larger goes farther to stay clear of walls
     entrances: int = 16  # spines tried from start and goal; larger finds more and asks more time of every query
@@ -43,13 +46,14 @@ class ConesSettings:
 
 @dataclass(frozen=True, eq=False)
 class Cones:
-    """A world prepared for one robot. runs (k, 8): the spines, rows of `freeways.spines`; landmarks (n, l): see
-    `spine_search`."""
+    """A world prepared for one robot. lines (f, 3) of the faces that make the spines; runs (k, 8): the spines, rows of
+    `freeways.spines`; landmarks (n, l): see `spine_search`."""
 
     world: World
     robot: Robot
     settings: ConesSettings
     body: Body
+    lines: Floats
     runs: Floats
     slices: Slices
     graph: SpineGraph
@@ -59,26 +63,31 @@ class Cones:
 
 def plan(world: World, robot: Robot, start: Pose, goal: Pose, settings: ConesSettings) -> Answer:
     """A path of `robot` in `world` from `start` to `goal` (3,) along the spines of cones, or why none was found."""
-    cones = prepare(world, robot, settings)
+    cones = _without_landmarks(world, robot, settings)
     return replace(query(cones, start, goal), cones=drawn(cones))
 
 
 def prepare(world: World, robot: Robot, settings: ConesSettings) -> Cones:
     """All cones with their legal orientations and crossings: what many queries share."""
+    cones = _without_landmarks(world, robot, settings)
+    return replace(cones, landmarks=landmarks_of(cones.graph))
+
+
+def _without_landmarks(world: World, robot: Robot, settings: ConesSettings) -> Cones:
+    """Cones for a single query: landmarks cost as much as many searches."""
     body = _body(world, robot, settings)
-    lines = np.column_stack([world.normals, world.offsets])
-    pairs = facing_pairs(body.ends, world.normals, world.offsets)
-    runs = _distinct(spines(pairs, body.ends, lines, robot.width, settings.crowding), world.grid)
+    faces, lines = faces_of(world, settings.detail * robot.width)
+    runs = spines(facing_pairs(faces, lines), faces, lines, body.ends, robot.width, settings.crowding)
+    runs = _distinct(runs, world.grid)
     slices, kept = slices_of(runs, body)
     graph = graph_of(slices, settings.caution)
-    course = course_of(world, robot)
-    return Cones(world, robot, settings, body, runs[kept], slices, graph, landmarks_of(graph), course)
+    none, course = np.zeros((len(graph.arcs), 0)), course_of(world, robot)
+    return Cones(world, robot, settings, body, lines, runs[kept], slices, graph, none, course)
 
 
 def drawn(cones: Cones) -> tuple[Cone, ...]:
     """The cones with their outlines, for figures."""
-    lines = np.column_stack([cones.world.normals, cones.world.offsets])
-    return cone_outlines(cones.slices, cones.body.ends, lines, cones.runs[:, 4:6])
+    return cone_outlines(cones.slices, cones.body.ends, cones.lines, cones.runs[:, 4:6])
 
 
 def query(cones: Cones, start: Pose, goal: Pose) -> Answer:
