@@ -10,10 +10,11 @@ import typer
 
 from backend.next_view import NextView
 from planners.compiled import compiling
-from slam import figures, toml_file
+from slam import toml_file
 from slam.checkpoint import CheckpointError, Keeper, resumed
 from slam.commands.console import err, out, print_values, progress
 from slam.commands.plan import announce_compiling, told
+from slam.figures import gallery
 from slam.html_report import write_page
 from slam.logbook import Logbook
 from slam.pipeline import Merged, merge_scans
@@ -62,7 +63,7 @@ def merge(
         story = Story(merged.percepts, merged.poses, merged.room, merged.estimate.landmarks, found)
         with whole_folder(to) as folder:
             write_result(folder, merged, drive, opinions)
-            figures.draw(story, folder / "figures")
+            gallery.draw(story, folder / "figures")
             write_report(folder, report | {"tour": trouble})
             write_page(folder)
     keeper.path.unlink(missing_ok=True)

@@ -14,7 +14,7 @@ from planners.path import Answer
 from planners.robot import Robot, parse_robot
 from slam import toml_file
 from slam.commands.console import err, out
-from slam.figures_of_plans import draw_plans, png_of
+from slam.figures.plans import draw_plans, png_of
 from slam.planner_comparison import Trial, compare, trial, trial_values, verdict
 from slam.planning import PLANNERS, PlanningSettings, parse_pose, paths_text
 from slam.settings import Settings

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from slam.commands.console import err, print_values
-from slam.figures import draw_errors
+from slam.figures.gallery import draw_errors
 from slam.html_report import write_page
 from slam.result_folder import MAP, read_report, write_report
 from slam.room_file import read_room

@@ -8,9 +8,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from zipfile import ZipFile
 
-from slam import figures
 from slam.exports.formats import EXPORTS, export
 from slam.exports.product import load_product
+from slam.figures import gallery
 from slam.html_report import page
 from slam.result_folder import REPORT, story_of
 
@@ -67,7 +67,7 @@ def _with_figures(result: Path) -> Iterator[Path]:
         return
     with TemporaryDirectory() as scratch:
         whole = Path(shutil.copytree(result, Path(scratch) / "result"))
-        figures.draw(story_of(whole), whole / "figures")
+        gallery.draw(story_of(whole), whole / "figures")
         yield whole
 
 

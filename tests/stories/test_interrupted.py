@@ -7,8 +7,8 @@ from unittest.mock import Mock
 import pytest
 
 from frontend.scan import Scan
-from slam import figures
 from slam.commands import merge
+from slam.figures import gallery
 from tests.stories.command_line import run
 
 BASEMENT = Path(__file__).parents[2] / "datasets" / "flynn_basement"
@@ -39,7 +39,7 @@ def test_after_an_interruption_the_same_command_goes_on(tmp_path: Path, monkeypa
 def test_an_interruption_while_figures_are_drawn_loses_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     with monkeypatch.context() as patch:
-        patch.setattr(figures, "draw", Mock(side_effect=KeyboardInterrupt))
+        patch.setattr(gallery, "draw", Mock(side_effect=KeyboardInterrupt))
         stopped = run("merge", BASEMENT)
     assert stopped.code == 130
     assert stopped.err == "stopped after scan 3 of 3: the same command goes on from flynn_basement-map.checkpoint\n"

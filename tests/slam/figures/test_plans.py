@@ -7,7 +7,7 @@ from planners.cells import EMPTY, FULL
 from planners.path import Answer, Cells, Cone, Gap, Path
 from planners.robot import Robot
 from planners.world import World
-from slam.figures_of_plans import draw_plans, png_of
+from slam.figures.plans import draw_plans, png_of
 
 WORLD = World.from_obstacles(box(0, 0, 6, 2), [])
 ENDS = np.array([1.0, 1.0, 0.0]), np.array([5.0, 1.0, 0.0])

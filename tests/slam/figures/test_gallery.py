@@ -9,7 +9,8 @@ from shapely import MultiPolygon, Polygon, box
 
 from backend.room_map import Decision, Door, MapEdge, MapEdgeKind, Obstacle, RoomMap, Verdict
 from frontend.scan import Scan, Sensor
-from slam.figures import FIGURES, draw, draw_errors, map_errors
+from slam.figures.gallery import FIGURES, draw, draw_errors
+from slam.figures.rooms import map_errors
 from slam.map_scores import MapTruth
 from slam.perception import FrontendSettings, perceive
 from slam.story import Story

@@ -5,11 +5,11 @@ import pytest
 from matplotlib.figure import Figure
 
 from frontend.scan import Scan, Sensor
-from slam.figures_of_sensing import beam_pattern, infrared_codes, sensing_figures
+from slam.figures.sensing import beam_pattern, infrared_codes, sensing_figures
 from slam.perception import FrontendSettings, Percept, perceive
 from slam.recordings import open_recording
 
-DOORS = Path(__file__).parents[2] / "datasets" / "flynn_two_doors"
+DOORS = Path(__file__).parents[3] / "datasets" / "flynn_two_doors"
 
 
 @pytest.fixture(scope="module")
