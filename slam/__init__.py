@@ -6,7 +6,7 @@ estimating with refining and main_map. door_tracking, wide_beam: what the merge 
 settings, mapper_settings: all opinions in one tree.
 recordings, recording_files, readers, checkpoint, trajectory_file, pose_graph_file, room_file, decision_file,
 world_file, toml_file, result_folder, exports, whole_output: what is read and written.
-scoring, map_scores, boundary_scores, object_scores, trajectory_scores: how good it is. simulation: worlds with truth.
+scores: how good it is. simulation: worlds with truth.
 planning, planner_comparison, figures, html_report, story, serve, doctor,
 failures, cli, commands: what a user sees.
 """

@@ -11,7 +11,7 @@ from slam.figures.gallery import draw_errors
 from slam.html_report import write_page
 from slam.result_folder import MAP, read_report, write_report
 from slam.room_file import read_room
-from slam.scoring import map_scores, map_truth, pose_scores, relation_scores
+from slam.scores.results import map_scores, map_truth, pose_scores, relation_scores
 
 
 def score(

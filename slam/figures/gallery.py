@@ -9,7 +9,7 @@ from backend.room_map import RoomMap
 from slam.figures.rooms import decisions, map_errors, merged_map, planned_paths
 from slam.figures.sensing import sensing_figures
 from slam.figures.views import overlaid_views, raw_boundaries, redrawn_boundaries, sketches
-from slam.map_scores import MapTruth
+from slam.scores.maps import MapTruth
 from slam.story import Story
 
 DOTS_PER_INCH = 110

@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 
 from backend.contours import as_polygons
 from backend.room_map import MapEdgeKind, RoomMap, Verdict
-from slam.boundary_scores import distances, edges_of
 from slam.figures.sheet import (
     FAKE,
     FREE,
@@ -24,7 +23,8 @@ from slam.figures.sheet import (
     patch,
     sheet,
 )
-from slam.map_scores import MapTruth, real_edges
+from slam.scores.boundaries import distances, edges_of
+from slam.scores.maps import MapTruth, real_edges
 from slam.story import Story
 
 PLANNER_INKS = (("#d55e00", 3.5), ("#0072b2", 1.5))  # the second is drawn over the first

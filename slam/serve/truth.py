@@ -17,7 +17,7 @@ from backend.room_map import MapEdge, MapEdgeKind, RoomMap
 from frontend.scan import Floats, Scan
 from slam.result_folder import plain
 from slam.room_file import free_space
-from slam.scoring import map_scores, map_truth, pose_scores
+from slam.scores.results import map_scores, map_truth, pose_scores
 from slam.serve.messages import Arrays, pack, rings_of
 from slam.trajectory_file import read_trajectory
 

@@ -9,7 +9,7 @@ from shapely import MultiPolygon, Polygon
 from slam.pipeline import Merged, merge_scans
 from slam.recordings import open_recording
 from slam.room_file import free_space
-from slam.scoring import overlap, raw_free_space, visible
+from slam.scores.results import overlap, raw_free_space, visible
 from slam.settings import Settings, knowing
 from slam.trajectory_file import read_trajectory
 

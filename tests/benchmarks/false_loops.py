@@ -18,7 +18,7 @@ from backend.factor_graph import FactorGraph, GraphSettings
 from frontend.rigid_motion import between, compose
 from frontend.scan import Floats, Scan
 from slam.recordings import open_recording
-from slam.trajectory_scores import Spread, read_relations, relation_errors
+from slam.scores.trajectories import Spread, read_relations, relation_errors
 from tests.benchmarks.pose_stress import FALSE, SEED, UNCHANGED
 from tests.benchmarks.poses import Row, mapped, recordings, track_of
 from tests.benchmarks.poses import row as figure

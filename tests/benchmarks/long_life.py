@@ -19,8 +19,8 @@ from slam.logbook import Logbook
 from slam.mapper import Mapper
 from slam.readers.recording import Recording
 from slam.recordings import open_recording
+from slam.scores.trajectories import Spread, read_relations, relation_errors
 from slam.settings import Settings
-from slam.trajectory_scores import Spread, read_relations, relation_errors
 from tests.benchmarks.poses import WARM_UP, Row, odometry_of, recordings, row, track_of, wall_gaps
 
 SETTINGS = Settings()

@@ -14,7 +14,7 @@ from backend.map_reading import ReadingSettings
 from backend.polygon_merging import Merger, merge_views
 from backend.provenance import boundary_edges
 from backend.room_map import MapEdge, MapEdgeKind, RoomMap
-from slam.map_scores import MapScores, MapTruth, score_map
+from slam.scores.maps import MapScores, MapTruth, score_map
 from tests.backend.plan_rays import Rays, furnished_plan, misplaced, scattered_poses, view_of
 from tests.benchmarks.merged_paths import Paths, paths_on
 from tests.benchmarks.merging_cases import VIEWS, Case, furnished_case

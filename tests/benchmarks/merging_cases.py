@@ -15,8 +15,8 @@ from shapely import Polygon
 from backend.view import View
 from frontend.fusion import FusionSettings
 from frontend.scan import Scan, Sensor
-from slam.map_scores import MapTruth
 from slam.perception import FrontendSettings, perceive
+from slam.scores.maps import MapTruth
 from slam.simulation.floors import polygons_of
 from slam.simulation.mlstruct import convert_mlstruct
 from slam.simulation.world import build_world

@@ -17,12 +17,12 @@ from backend.samples import Samples
 from backend.surfaces import surfaces_of
 from backend.view import View
 from backend.wall_faces import FaceSettings, fuse_faces
-from slam.map_scores import MapTruth, score_map
 from slam.mapper import Mapper
 from slam.perception import FrontendSettings, perceive
 from slam.recordings import open_recording
 from slam.room_file import free_space
-from slam.scoring import overlap, raw_free_space, visible
+from slam.scores.maps import MapTruth, score_map
+from slam.scores.results import overlap, raw_free_space, visible
 from slam.settings import Settings, knowing
 from slam.trajectory_file import read_trajectory
 from tests.benchmarks.merging_peers import plain_union

@@ -18,7 +18,7 @@ import numpy as np
 
 from frontend.scan import Floats, Scan
 from slam.recordings import open_recording
-from slam.trajectory_scores import Spread, read_relations, relation_errors
+from slam.scores.trajectories import Spread, read_relations, relation_errors
 from tests.benchmarks.pose_rivals import SYSTEMS
 from tests.benchmarks.poses import LOGS, WARM_UP, mapped, odometry_of, recordings, track_of
 

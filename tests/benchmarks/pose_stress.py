@@ -21,8 +21,8 @@ from slam.loops import VerificationSettings, close_loop
 from slam.mapper import Mapper
 from slam.perception import Percept
 from slam.recordings import open_recording
+from slam.scores.trajectories import Spread, read_relations, relation_errors
 from slam.settings import Settings
-from slam.trajectory_scores import Spread, read_relations, relation_errors
 from tests.benchmarks.poses import WARM_UP, Row, mapped, recordings, track_of
 from tests.benchmarks.poses import row as figure
 

@@ -22,8 +22,7 @@ from frontend.scan import Floats, Scan
 from slam.mapper import Mapper
 from slam.mapper_settings import MapperSettings
 from slam.recordings import open_recording
-from slam.settings import Settings
-from slam.trajectory_scores import (
+from slam.scores.trajectories import (
     Spread,
     Track,
     absolute_errors,
@@ -32,6 +31,7 @@ from slam.trajectory_scores import (
     read_relations,
     relation_errors,
 )
+from slam.settings import Settings
 from tests.benchmarks.pose_costs import peak_megabytes, start_costs
 from tests.benchmarks.pose_pieces import ABLATIONS, POORER_SENSORS, spoilt
 

@@ -20,13 +20,13 @@ from backend.thin_rectangles import thin_rectangles
 from frontend.rigid_motion import inverse, transform
 from frontend.scan import Floats, Scan
 from slam.door_tracking import sharpened_views
-from slam.map_scores import MapScores, MapTruth, best_alignment, moved, score_map
 from slam.perception import perceive
 from slam.pipeline import merge_scans
 from slam.readers.recording import OdometryNoise
 from slam.recordings import open_recording
 from slam.room_file import free_space, read_features
-from slam.scoring import visible
+from slam.scores.maps import MapScores, MapTruth, best_alignment, moved, score_map
+from slam.scores.results import visible
 from slam.settings import Settings, knowing
 from slam.simulation.floors import Plan
 from slam.simulation.random_plans import random_plan

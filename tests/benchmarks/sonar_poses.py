@@ -18,13 +18,13 @@ from frontend.scan import Floats, Scan
 from slam.mapper import Mapper
 from slam.readers.recording import OdometryNoise
 from slam.recordings import open_recording
+from slam.scores.trajectories import absolute_errors
 from slam.settings import Settings, knowing
 from slam.simulation.random_plans import random_plan
 from slam.simulation.record import Recipe, drive_through
 from slam.simulation.trajectory import in_first_frame, true_poses
 from slam.simulation.world import World, build_world, read_plan
 from slam.trajectory_file import read_trajectory
-from slam.trajectory_scores import absolute_errors
 
 DATASETS = Path(__file__).parents[2] / "datasets"
 FLOORS = range(11, 18)  # seeds of random floors of six rooms, and of their drives

@@ -14,8 +14,8 @@ from frontend.rigid_motion import inverse, rotation
 from frontend.scan import Floats, Scan
 from slam.pipeline import Merged, merge_scans
 from slam.recordings import open_recording
+from slam.scores.trajectories import read_relations, relation_errors
 from slam.settings import Settings
-from slam.trajectory_scores import read_relations, relation_errors
 from tests.benchmarks.poses import odometry_of, track_of
 from tests.simulated_drives import drive, once_round, round_building
 

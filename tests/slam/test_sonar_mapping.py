@@ -10,12 +10,12 @@ from frontend.scan import Floats, Scan
 from slam.mapper_settings import MapperSettings
 from slam.perception import FrontendSettings, perceive
 from slam.pose_graph import PoseGraph
+from slam.scores.trajectories import absolute_errors
 from slam.simulation.random_plans import random_plan
 from slam.simulation.record import Recipe, drive_through
 from slam.simulation.trajectory import in_first_frame, true_poses
 from slam.simulation.world import build_world
 from slam.sonar_mapping import SonarMapping
-from slam.trajectory_scores import absolute_errors
 
 COUNT = 25
 

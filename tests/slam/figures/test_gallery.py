@@ -11,8 +11,8 @@ from backend.room_map import Decision, Door, MapEdge, MapEdgeKind, Obstacle, Roo
 from frontend.scan import Scan, Sensor
 from slam.figures.gallery import FIGURES, draw, draw_errors
 from slam.figures.rooms import map_errors
-from slam.map_scores import MapTruth
 from slam.perception import FrontendSettings, perceive
+from slam.scores.maps import MapTruth
 from slam.story import Story
 
 
