@@ -7,6 +7,6 @@ settings, mapper_settings: all opinions in one tree.
 recordings, recording_files, readers, checkpoint, trajectory_file, pose_graph_file, room_file, decision_file,
 world_file, toml_file, result_folder, exports, whole_output: what is read and written.
 scores: how good it is. simulation: worlds with truth.
-planning, planner_comparison, figures, html_report, story, serve, doctor,
+planning, plan_question, planner_comparison, figures, html_report, story, serve, doctor,
 failures, cli, commands: what a user sees.
 """

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from slam.commands.console import err, out
+from slam.failures import is_foreseen
 
 COMMANDS = ("merge", "score", "plan", "draw", "view", "convert", "simulate", "floor_plan", "doctor")
 
@@ -20,10 +21,7 @@ def main() -> None:
     try:
         command_line(wanted)()
     except Exception as failure:
-        # Loaded late: what may fail knows every stage.
-        from slam.failures import FAILURES  # noqa: PLC0415
-
-        if not isinstance(failure, FAILURES):
+        if not is_foreseen(failure):
             raise
         says = f"{failure.filename}: {failure.strerror}" if isinstance(failure, OSError) else str(failure)
         err.print(f"roomsketch: {' '.join(says.split())}")

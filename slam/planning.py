@@ -16,6 +16,7 @@ from planners.generalized_cones import ConesSettings
 from planners.path import Answer, Path, PlanningError
 from planners.robot import Robot, parse_robot
 from planners.world import World, WorldError
+from slam.plan_question import CELLS, CONES
 
 
 @dataclass(frozen=True)
@@ -31,10 +32,10 @@ class PlanningSettings:
 Planner = Callable[[World, Robot, Floats, Floats, PlanningSettings], Answer]
 
 PLANNERS: dict[str, Planner] = {
-    "cones": lambda world, robot, start, goal, settings: generalized_cones.plan(
+    CONES: lambda world, robot, start, goal, settings: generalized_cones.plan(
         world, robot, start, goal, settings.cones
     ),
-    "configuration-space": lambda world, robot, start, goal, settings: configuration_space.plan(
+    CELLS: lambda world, robot, start, goal, settings: configuration_space.plan(
         world, robot, start, goal, settings.configuration_space
     ),
 }
@@ -73,19 +74,6 @@ def tour_or_reason(
         return tour(safety, start, settings), None
     except (PlanningError, WorldError) as reason:
         return {}, str(reason)
-
-
-def parse_pose(text: str) -> Floats:
-    """A pose (3,) from "X,Y" or "X,Y,HEADING", metres and radians; without a heading it is nan: any will do."""
-    try:
-        numbers = [float(part) for part in text.split(",")]
-    except ValueError as damage:
-        raise PlanningError(f"{text!r} is no X,Y[,HEADING]: {damage}") from damage
-    if not np.isfinite(numbers).all():
-        raise PlanningError(f"{text!r} holds a number that is not finite, but X,Y or X,Y,HEADING is needed")
-    if len(numbers) not in (2, 3):
-        raise PlanningError(f"{text!r} has {len(numbers)} parts, but X,Y or X,Y,HEADING is needed")
-    return np.array([*numbers, np.nan][:3])
 
 
 def paths_text(answers: dict[str, Answer]) -> str:

@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from frontend.scan import Scan
+if TYPE_CHECKING:
+    from frontend.scan import Scan
 
 NOTHING = {
     "precision": "none claimed",
@@ -20,7 +21,7 @@ out = Console(soft_wrap=True, highlight=False, markup=False)
 err = Console(stderr=True, soft_wrap=True, highlight=False, markup=False)
 
 
-def progress(scans: tuple[Scan, ...]) -> Iterable[Scan]:
+def progress(scans: "tuple[Scan, ...]") -> "Iterable[Scan]":
     """The scans, with a bar on standard error while they are taken; silent when that is no terminal."""
     return track(scans, description="scans", console=err, transient=True, disable=not err.is_terminal)
 

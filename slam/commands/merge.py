@@ -13,7 +13,7 @@ from planners.compiled import compiling
 from slam import toml_file
 from slam.checkpoint import CheckpointError, Keeper, resumed
 from slam.commands.console import err, out, print_values, progress
-from slam.commands.plan import announce_compiling, told
+from slam.commands.planned import announce_compiling, told
 from slam.figures import gallery
 from slam.html_report import write_page
 from slam.logbook import Logbook

@@ -5,7 +5,7 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
-from slam.failures import FAILURES
+from slam.failures import all_failures
 from slam.result_folder import Source
 from slam.serve.growth import Errand, grow
 from slam.serve.replay import replay
@@ -14,6 +14,7 @@ from slam.serve.truth import Truth
 from slam.serve.uploads import Limits, merge_upload
 from slam.serve.worker import Worker
 
+FAILURES = all_failures()
 MOST_KEPT = 8  # runs; with one more, the oldest upload is forgotten
 AT_ONCE = 1  # merges; the others wait for their turn
 

@@ -3,11 +3,10 @@
 import json
 
 import numpy as np
-import pytest
 from shapely import MultiPolygon, Point, Polygon
 
-from planners.path import Answer, Path, PlanningError
-from slam.planning import PLANNERS, PlanningSettings, answer_values, parse_pose, paths_text, tour, tour_or_reason
+from planners.path import Answer, Path
+from slam.planning import PLANNERS, PlanningSettings, answer_values, paths_text, tour, tour_or_reason
 
 ROOM = MultiPolygon([Polygon([(0, 0), (2, 0), (2, 3), (3, 3), (3, 0), (6, 0), (6, 4), (0, 4)])])
 START = np.array([1.0, 1.0, 0.0])
@@ -28,17 +27,6 @@ def test_a_map_nobody_can_drive_on_says_so() -> None:
     answers, reason = tour_or_reason(ROOM, np.array([0.1, 0.1, 0.0]), PlanningSettings())
     assert answers == {}
     assert reason == "a robot disc:0.15 cannot stand at the first pose (0.10, 0.10)"
-
-
-def test_a_pose_without_heading_leaves_it_open() -> None:
-    assert np.array_equal(parse_pose("1,-2.5"), [1, -2.5, np.nan], equal_nan=True)
-    assert np.array_equal(parse_pose("1,-2.5,0.5"), [1, -2.5, 0.5])
-
-
-@pytest.mark.parametrize("text", ["", "1", "1,2,3,4", "1;2", "nan,1", "inf,1"])
-def test_what_is_no_pose_is_refused(text: str) -> None:
-    with pytest.raises(PlanningError, match="X,Y"):
-        parse_pose(text)
 
 
 def test_answers_are_plain_values() -> None:
