@@ -10,6 +10,14 @@ Floats = NDArray[np.float64]
 CIRCLE = 2 * np.pi
 
 
+def spoken(low: float, high: float) -> str:
+    """An arc of headings in words: whole degrees from 0 to 360, the end before the begin where it reaches across 0."""
+    begin, end = round(np.degrees(low)), round(np.degrees(high))
+    turns = begin // 360
+    end -= 360 * turns
+    return f"{begin - 360 * turns}° to {end - 360 if end > 360 else end}°"
+
+
 @compiled
 def joined(cut: Floats) -> Floats:
     """Arcs from a set of intervals in [0, 2π]: the last and the first become one where they meet at 0."""

@@ -5,6 +5,8 @@ from collections.abc import Callable
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import breadth_first_order
 
 from planners.path import Gap, Kind
 from planners.visibility import eroded
@@ -13,6 +15,7 @@ from planners.world import World
 Floats = NDArray[np.float64]
 
 HALVINGS = 30  # of the interval that holds the radius of the largest disc
+PLAY = 1e-4  # of that radius: a disc so much smaller passes, one so much larger does not; larger blurs the place
 
 
 def narrowest(world: World, start: Floats, goal: Floats) -> tuple[float, Floats]:
@@ -29,10 +32,34 @@ def narrowest(world: World, start: Floats, goal: Floats) -> tuple[float, Floats]
         middle = (low + high) / 2
         joined = _part_of(world, middle, ends[0], ends[1]) is not None
         low, high = (middle, high) if joined else (low, middle)
-    # A part as small as a point vanishes while it is eroded: then it is the end itself.
-    there, back = (_part_of(world, high, each, each) or each for each in ends)
-    line = shapely.shortest_line(there, back)
-    return 2 * low, shapely.get_coordinates(line).mean(axis=0)
+    joined_parts = _part_of(world, low * (1 - PLAY), ends[0], ends[1])
+    if low == 0 or joined_parts is None:
+        return 0.0, _between_parts(world, ends)
+    return 2 * low, _neck(world, joined_parts, high, ends)
+
+
+def _between_parts(world: World, ends: tuple[shapely.Point, shapely.Point]) -> Floats:
+    """Where the parts of free space that hold the ends come nearest: in a wall."""
+    parts = [min(world.free.geoms, key=each.distance) for each in ends]
+    return np.asarray(shapely.get_coordinates(shapely.shortest_line(*parts)).mean(axis=0))
+
+
+def _neck(world: World, around: shapely.Polygon, radius: float, ends: tuple[shapely.Point, shapely.Point]) -> Floats:
+    """The place (2,) on a way through `around` that a disc of `radius` cannot pass.
+
+    What that disc still reaches falls into rooms; a neck between them, not the wall where they lie closest, is the gap.
+    """
+    rooms = shapely.union_all(eroded(world.free, radius * (1 + PLAY))).buffer(8 * PLAY * radius)
+    necks = shapely.get_parts(around.difference(rooms))
+    pieces = np.concatenate([necks, shapely.get_parts(around.intersection(rooms))])
+    pairs = shapely.STRtree(pieces).query(pieces, predicate="dwithin", distance=0.01 * PLAY * radius)
+    first, last = (int(np.argmin(shapely.distance(pieces, each))) for each in ends)
+    touching = coo_array((np.ones(pairs.shape[1]), tuple(pairs)), shape=(len(pieces), len(pieces)))
+    before, way = breadth_first_order(touching.tocsr(), first)[1], [last]
+    while before[way[-1]] >= 0:
+        way.append(int(before[way[-1]]))
+    passed = [piece for piece in way[1:-1] if piece < len(necks)] or [piece for piece in way if piece < len(necks)]
+    return np.asarray(shapely.get_coordinates(pieces[passed[0]].representative_point())[0])
 
 
 def _part_of(world: World, radius: float, first: shapely.Point, second: shapely.Point) -> shapely.Polygon | None:
@@ -76,9 +103,10 @@ def largest_scale(answers: Callable[[float], Kind], low: float, steps: int) -> f
 
 def gap_sentence(gap: Gap) -> str:
     """The gap in words: where, how wide, and what is needed."""
-    one, two = (f"({x:.2f}, {y:.2f})" for x, y in gap.edges.mean(axis=1))
     if gap.width == 0:
-        return f"walls part them altogether, such as those at {one} and {two}; needed are {gap.needed:.4g} m"
+        x, y = gap.place
+        return f"walls part them altogether, such as the one at ({x:.2f}, {y:.2f}); needed are {gap.needed:.4g} m"
+    one, two = (f"({x:.2f}, {y:.2f})" for x, y in gap.edges.mean(axis=1))
     return (
         f"between the walls at {one} and {two} the widest way is {gap.width:.4g} m wide; needed are {gap.needed:.4g} m"
     )

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from planners.circular import joined
+from planners.circular import joined, spoken
 from planners.orientations import intersected
 from planners.slices import Slices
 from planners.spine_graph import SpineGraph
@@ -38,4 +38,4 @@ def _at_slice(slices: Slices, row: int, last: int) -> str:
 
 
 def _degrees(legal: Floats) -> str:
-    return ", ".join(f"{low:.0f}° to {high:.0f}°" for low, high in np.degrees(joined(legal)))
+    return ", ".join(spoken(low, high) for low, high in joined(legal))

@@ -45,5 +45,5 @@ def _check_outline(world: World, robot: Robot, pose: Floats, place: str) -> None
     outside = shapely.difference(robot.at(pose), world.free)
     if not outside.is_empty:
         depth = shapely.distance(shapely.points(shapely.get_coordinates(outside)), world.free).max()
-        degrees = np.degrees(pose[2])
-        raise PlanningError(f"{place} at {degrees:.0f}° overlaps an obstacle: the robot reaches {depth:.3g} m into it")
+        degrees = round(np.degrees(pose[2])) % 360
+        raise PlanningError(f"{place} at {degrees}° overlaps an obstacle: the robot reaches {depth:.3g} m into it")

@@ -8,7 +8,8 @@ import numpy as np
 from shapely import box
 
 from frontend.scan import Floats
-from planners.beyond_cones import CIRCLE, beyond
+from planners.beyond_cones import beyond
+from planners.circular import spoken
 from planners.path import Answer, Path
 from planners.robot import Robot
 from planners.world import World
@@ -96,9 +97,8 @@ def missed(cones: Answer, path: Path, robot: Robot) -> str:
     x, y, heading = found.pose
     if not found.slices:
         return f"it passes ({x:.2f}, {y:.2f}), which none of the {len(cones.cones)} cones covers"
-    low, high = np.degrees(found.lost - CIRCLE * (heading // CIRCLE))
     most = "the one slice there" if found.slices == 1 else f"the best of {found.slices} slices there"
     return (
-        f"at ({x:.2f}, {y:.2f}) it holds the heading {np.degrees(heading % CIRCLE):.0f}°, but {most}, "
-        f"{found.width:.2f} m wide, loses the headings {low:.0f}° to {high:.0f}°"
+        f"at ({x:.2f}, {y:.2f}) it holds the heading {round(np.degrees(heading)) % 360}°, but {most}, "
+        f"{found.width:.2f} m wide, loses the headings {spoken(*found.lost)}"
     )

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planners.circular import CIRCLE, joined, shared
+from planners.circular import CIRCLE, joined, shared, spoken
 
 
 def test_the_last_interval_and_the_first_are_one_arc_where_they_meet_at_zero() -> None:
@@ -38,3 +38,12 @@ def test_a_heading_is_shared_when_both_arcs_hold_it(
     if np.min(np.abs((ends - heading + np.pi) % CIRCLE - np.pi)) > 1e-6:
         both = within(heading, *first) and within(heading, *second)
         assert any(within(heading, *map(float, row)) for row in found[:count]) == both
+
+
+def test_arcs_are_spoken_of_in_whole_degrees_of_one_turn() -> None:
+    assert spoken(0.1, 1.0) == "6° to 57°"
+    assert spoken(6.0, CIRCLE + 0.5) == "344° to 29°"
+    assert spoken(-0.3, 0.3) == "343° to 17°"
+    assert spoken(3 * CIRCLE + 1.0, 4 * CIRCLE) == "57° to 360°"
+    assert spoken(6.2829, CIRCLE + 1.0) == "0° to 57°"
+    assert spoken(0.0, CIRCLE) == "0° to 360°"

@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from shapely import box
 
 from planners.explain import gap_of, gap_sentence, largest_scale, narrowest, walls_beside
-from planners.path import Gap, Kind
+from planners.path import Kind
+from planners.world import World
 from tests.planners.known_worlds import door
 
 LEFT, RIGHT = np.array([15.0, 30.0]), np.array([85.0, 30.0])
@@ -38,9 +40,25 @@ def test_the_walls_beside_a_place_are_on_either_side_of_it() -> None:
     assert second[:, 1] == pytest.approx([34.5, 34.5])
 
 
+@pytest.mark.parametrize("shelf", [18.0, 17.0])
+def test_the_gap_is_the_way_round_and_not_the_thin_wall_that_is_gone_round(shelf: float) -> None:
+    """A wall as thin as a hand parts two rooms; the only way leads over a long shelf above its end."""
+    shelves = [box(19.95, 0, 20.05, shelf), box(2, shelf, 38, shelf + 0.1)]
+    world = World.from_obstacles(box(0, 0, 40, 20), shelves)
+    gap = gap_of(world, np.array([10.0, 8.0]), np.array([30.0, 8.0]), 3.5)
+    assert gap.width == pytest.approx(min(1.9 + 18 - shelf, 2.0), abs=1e-4)
+    if shelf == 18:
+        assert sorted(gap.edges[:, :, 1].mean(axis=1)) == pytest.approx([shelf + 0.1, 20], abs=1e-5)
+    else:
+        assert not 19 < gap.place[0] < 21, "the ends of the shelf are as narrow, the thin wall is no gap"
+
+
 def test_walls_that_part_altogether_are_told_so() -> None:
-    gap = Gap(np.zeros((2, 2, 2)), 0.0, 3.0, np.zeros(2))
-    assert "walls part them altogether" in gap_sentence(gap)
+    world = World.from_obstacles(box(0, 0, 40, 20), [box(19.9, 0, 20.1, 20)])
+    gap = gap_of(world, np.array([10.0, 8.0]), np.array([30.0, 8.0]), 3.0)
+    assert gap.width == 0
+    assert gap.place[0] == pytest.approx(20)
+    assert "walls part them altogether, such as the one at (20.00, " in gap_sentence(gap)
 
 
 def test_the_largest_scale_is_found_to_its_steps_and_a_close_call_ends_the_search() -> None:
