@@ -12,8 +12,9 @@ from backend.room_map import MapEdgeKind
 from frontend.scan import Floats
 from planners.world import World
 from slam.room_file import EDGE_KINDS, Properties, RoomFileError, read_features
+from slam.simulation.world import read_plan
 
-WALL, RECTANGLE = EDGE_KINDS[MapEdgeKind.REAL], "rectangle"
+WALL, RECTANGLE, PLANNED_WALL = EDGE_KINDS[MapEdgeKind.REAL], "rectangle", "wall"
 Feature = tuple[BaseGeometry, Properties]
 
 
@@ -28,25 +29,25 @@ class PlanningWorld:
 def read_world(path: Path, layer: str, sigmas: float = 0.0) -> PlanningWorld:
     """The world of any GeoJSON with kinds: a map's `layer`, else its free space, else obstacles in a boundary.
 
-    Rectangles are walls that enclose free space. sigmas: every wall edge keeps the robot away by as many of its own
-    standard deviations.
+    Rectangles, and the walls of a floor plan with its obstacles and shut doors, enclose free space. sigmas: every wall
+    edge keeps the robot away by as many of its own standard deviations.
     """
     features = read_features(path)
-    kinds = [str(says.get("kind")) for _, says in features]
-    taken = next((kind for kind in (layer, "free", "boundary", RECTANGLE) if kind in kinds), None)
+    of_kind: dict[str, list[BaseGeometry]] = {}
+    for geometry, says in features:
+        of_kind.setdefault(str(says.get("kind")), []).append(geometry)
+    taken = next((kind for kind in (layer, "free", "boundary", RECTANGLE, PLANNED_WALL) if kind in of_kind), None)
     if taken is None:
-        known = ", ".join(sorted(set(kinds))) or "none at all"
-        raise RoomFileError(f"{path}: no feature of kind safety, free, boundary or rectangle, only {known}")
-    geometries = [geometry for (geometry, _), kind in zip(features, kinds, strict=True) if kind == taken]
-    obstacles = [
-        geometry for (geometry, _), kind in zip(features, kinds, strict=True) if kind in ("obstacle", "wall", RECTANGLE)
-    ]
-    if taken == RECTANGLE:
-        free = _enclosed(geometries)
+        known = ", ".join(sorted(of_kind)) or "none at all"
+        raise RoomFileError(f"{path}: no feature of kind safety, free, boundary, rectangle or wall, only {known}")
+    if taken in (RECTANGLE, PLANNED_WALL):
+        free = _enclosed(of_kind[taken] if taken == RECTANGLE else [body.outline for body in read_plan(path).solids])
     else:
-        free = _polygons(shapely.union_all(shapely.make_valid(np.array(geometries))))
+        free = _polygons(shapely.union_all(shapely.make_valid(np.array(of_kind[taken]))))
     if free.is_empty:
-        raise RoomFileError(f"{path}: its {taken} {'encloses' if taken == RECTANGLE else 'leaves'} no area free")
+        enclosing = taken in (RECTANGLE, PLANNED_WALL)
+        raise RoomFileError(f"{path}: its {taken} {'encloses' if enclosing else 'leaves'} no area free")
+    obstacles = [geometry for kind in ("obstacle", "wall", RECTANGLE) for geometry in of_kind.get(kind, [])]
     world = World.from_obstacles(free, obstacles) if taken == "boundary" else World.from_free_space(free)
     return PlanningWorld(world if sigmas == 0 else world.keep_away(*_clearances(path, features, sigmas)), taken)
 
@@ -60,9 +61,9 @@ def _clearances(path: Path, features: list[Feature], sigmas: float) -> tuple[Flo
     return segments, sigmas * np.array([spread for _, spread in walls])
 
 
-def _enclosed(rectangles: list[BaseGeometry]) -> MultiPolygon:
-    """What lies inside the walls that rectangles make up once they are merged."""
-    walls = shapely.union_all(rectangles)
+def _enclosed(solids: list[BaseGeometry]) -> MultiPolygon:
+    """What lies inside the walls that solids make up once they are merged."""
+    walls = shapely.union_all(solids)
     holes = [Polygon(ring) for part in _polygons(walls).geoms for ring in part.interiors]
     return _polygons(shapely.union_all(holes).difference(walls))
 

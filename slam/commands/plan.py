@@ -28,7 +28,7 @@ class Layer(StrEnum):
 
 def plan(
     room: Annotated[
-        Path, typer.Argument(help="map.geojson, or any GeoJSON of kinds free, rectangle, or boundary and obstacle.")
+        Path, typer.Argument(help="map.geojson, a floor plan, or any GeoJSON of kinds free, rectangle, or boundary.")
     ],
     start: Annotated[str, typer.Option("--from", help="X,Y[,HEADING] in metres and radians; any heading without.")],
     goal: Annotated[str, typer.Option("--to", help="X,Y[,HEADING]")],

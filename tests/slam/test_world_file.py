@@ -11,6 +11,7 @@ from shapely.geometry import mapping
 from shapely.geometry.base import BaseGeometry
 
 from slam.room_file import RoomFileError
+from slam.simulation.world import read_plan
 from slam.world_file import read_world
 
 ROOM = box(0, 0, 10, 6)
@@ -55,6 +56,29 @@ def test_rectangles_that_enclose_nothing_and_unknown_kinds_are_told_by_name(tmp_
         read_world(written(tmp_path, (ROOM, {"kind": "table"}), (ROOM, {"kind": "door"})), "safety")
     with pytest.raises(RoomFileError, match="only none at all"):
         read_world(written(tmp_path), "safety")
+
+
+def test_a_floor_plan_is_free_inside_its_walls_but_for_obstacles_and_shut_doors(tmp_path: Path) -> None:
+    shell = ROOM.buffer(0.2, join_style="mitre").difference(ROOM)
+    parts = [box(4.9, 0, 5.1, 2), box(4.9, 3, 5.1, 6)]
+    walls = [(shape, {"kind": "wall"}) for shape in (shell, *parts)]
+    inside = [(box(7, 1, 8, 2), {"kind": "obstacle"}), (box(0, 0, 10, 6), {"kind": "room", "name": "hall"})]
+    jambs = LineString([(5, 2), (5, 3)])
+    opened = read_world(written(tmp_path, *walls, *inside, (jambs, {"kind": "door", "open": True})), "safety")
+    assert opened.taken == "wall"
+    assert opened.world.free.area == pytest.approx(60 - 0.2 * 5 - 1)
+    assert len(opened.world.free.geoms) == 1
+    shut = read_world(written(tmp_path, *walls, *inside, (jambs, {"kind": "door", "open": False})), "safety").world
+    assert len(shut.free.geoms) == 2
+
+
+@pytest.mark.parametrize(
+    "plan", sorted((Path(__file__).parents[2] / "datasets" / "plans").iterdir()), ids=lambda p: p.stem
+)
+def test_every_plan_that_is_shipped_is_a_world_in_which_its_own_drive_is_free(plan: Path) -> None:
+    drive = read_plan(plan).drive
+    assert drive is not None
+    assert read_world(plan, "safety").world.free.covers(LineString(drive.waypoints))
 
 
 def test_every_wall_keeps_off_by_its_own_spread(tmp_path: Path) -> None:
