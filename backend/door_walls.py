@@ -1,4 +1,4 @@
-"""Walls beside doors: whether an opening interrupts a wall and leads through it."""
+"""Walls beside doors: whether an opening interrupts a wall and leads through it, and where in the wall it lies."""
 
 from dataclasses import dataclass
 
@@ -21,6 +21,9 @@ class DoorWallSettings:
     skew: float = 0.35  # radians; larger takes gaps that stand more aslant to their walls for doors
     through: float = 0.30  # larger asks for deeper free ground on both sides of the opening
     wall: float = 0.30  # larger asks for a longer wall beyond the jambs of what only few views saw
+    inside: float = (
+        0.10  # behind a jamb, where its wall is measured across; larger passes rounder ends, misses short walls
+    )
     turned: float = 0.80  # radians; larger looks for the wall of a door in more directions when a jamb is in the air
 
 
@@ -97,3 +100,34 @@ def _wall_from(edges: Floats, firm: Floats, loose: Floats, settings: DoorWallSet
     near = shapely.distance(shapely.Point(firm), shapely.linestrings(edges)) <= settings.beside
     wall = np.sum(along[beyond & near], axis=0) if np.any(beyond & near) else towards
     return np.asarray(wall / np.linalg.norm(wall))
+
+
+def in_the_middle(free: MultiPolygon, jambs: Floats, thickest: float, settings: DoorWallSettings) -> Floats:
+    """Jambs (2, 2) of one opening drawn to the middle line of the walls that end there.
+
+    A wall has two faces, and what was measured of its ends are corners of either. Where one of the walls is thicker
+    than `thickest`, or was seen from one side only, nothing tells its middle, and the jambs stay.
+    """
+    across = (jambs[1] - jambs[0]) / np.linalg.norm(jambs[1] - jambs[0])
+    middles = [
+        _middle_of_wall(free, jamb + settings.inside * outward, outward, thickest)
+        for jamb, outward in zip(jambs, (-across, across), strict=True)
+    ]
+    if middles[0] is None or middles[1] is None:
+        return jambs
+    line = (middles[1] - middles[0]) / np.linalg.norm(middles[1] - middles[0])
+    return np.asarray(middles[0] + ((jambs - middles[0]) @ line)[:, None] * line)
+
+
+def _middle_of_wall(free: MultiPolygon, point: Floats, along: Floats, thickest: float) -> Floats | None:
+    """The point (2,) of a wall midway between its faces, straight across from a point in it or on a face of it."""
+    side = thickest * np.array([-along[1], along[0]])
+    solid = shapely.get_parts(shapely.LineString([point - side, point + side]).difference(free))
+    here = shapely.Point(point)
+    near = [part for part in solid if part.distance(here) < 0.25 * thickest]
+    if not near:
+        return None
+    wall = min(near, key=here.distance)
+    ends = shapely.get_coordinates(wall)
+    reaches_on = np.linalg.norm(ends - point, axis=1).max() > 0.999 * thickest
+    return None if reaches_on or wall.length > thickest else np.asarray(ends.mean(axis=0))

@@ -13,7 +13,15 @@ from scipy.spatial import cKDTree
 from shapely import MultiPolygon
 
 from backend.contours import as_polygons
-from backend.door_walls import DoorWallSettings, edges_of, goes_on, leads_through, on_the_wall, wall_beyond
+from backend.door_walls import (
+    DoorWallSettings,
+    edges_of,
+    goes_on,
+    in_the_middle,
+    leads_through,
+    on_the_wall,
+    wall_beyond,
+)
 from backend.room_map import Door
 from backend.sight import Sight
 
@@ -62,6 +70,9 @@ def doors_of(
     merged = [_merged(seen, group, sight) for group in _grouped(seen.jambs, settings.apart)]
     widths = settings.narrowest, settings.widest
     merged = [replace(door, jambs=on_the_wall(free, door.jambs, widths, settings.walls)) for door in merged]
+    merged = [
+        replace(door, jambs=in_the_middle(walls, door.jambs, settings.thickest, settings.walls)) for door in merged
+    ]
     merged = [door for door, stays in zip(merged, _are_doors(free, merged, settings), strict=True) if stays]
     merged.sort(key=lambda door: tuple(door.jambs.mean(axis=0)))
     return tuple(Door(f"door {i + 1}", door.jambs, door.sure, door.views) for i, door in enumerate(merged))

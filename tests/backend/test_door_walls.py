@@ -3,9 +3,18 @@
 import numpy as np
 import pytest
 from shapely import box
+from shapely.affinity import rotate
 
 from backend.contours import as_polygons
-from backend.door_walls import DoorWallSettings, edges_of, goes_on, leads_through, on_the_wall, wall_beyond
+from backend.door_walls import (
+    DoorWallSettings,
+    edges_of,
+    goes_on,
+    in_the_middle,
+    leads_through,
+    on_the_wall,
+    wall_beyond,
+)
 
 TWO_ROOMS = as_polygons(box(0, 0, 3, 4).union(box(3.1, 0, 6, 4)).union(box(2.9, 1.5, 3.2, 2.4)))
 DOOR = np.array([[[3.05, 1.5], [3.05, 2.4]]])
@@ -39,3 +48,21 @@ def test_jambs_on_the_wall_stay_and_so_do_two_in_the_air() -> None:
     in_the_air = np.array([[1.0, 1.5], [1.0, 2.4]])
     for jambs in (DOOR[0], in_the_air):
         np.testing.assert_array_equal(on_the_wall(TWO_ROOMS, jambs, (0.55, 1.4), DoorWallSettings()), jambs)
+
+
+@pytest.mark.parametrize("turn", [0.0, 33.0])
+@pytest.mark.parametrize("jambs", [[[3.0, 1.5], [3.1, 2.4]], [[3.1, 1.5], [3.0, 2.4]], [[3.0, 1.5], [3.0, 2.4]]])
+def test_jambs_on_either_face_of_a_wall_are_drawn_to_its_middle_line(jambs: list[list[float]], turn: float) -> None:
+    def turned(points: object) -> np.ndarray:
+        cosine, sine = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+        return np.asarray(np.array(points) @ np.array([[cosine, sine], [-sine, cosine]]))
+
+    rooms = as_polygons(rotate(TWO_ROOMS, turn, origin=(0, 0)))
+    middle = in_the_middle(rooms, turned(jambs), 0.4, DoorWallSettings())
+    np.testing.assert_allclose(middle, turned([[3.05, 1.5], [3.05, 2.4]]), atol=2e-3)
+
+
+def test_a_door_stays_where_a_wall_beside_it_has_no_other_face() -> None:
+    niche = as_polygons(box(0, 0, 3, 4).union(box(2.9, 1.5, 4, 2.4)))
+    jambs = np.array([[3.0, 1.5], [3.0, 2.4]])
+    np.testing.assert_array_equal(in_the_middle(niche, jambs, 0.4, DoorWallSettings()), jambs)
