@@ -77,7 +77,7 @@ def _grouped(points: Floats, normals: Floats, grid: CellGrid) -> tuple[Ints, Int
     sector = np.floor(angle / (2 * np.pi) * SECTORS).astype(np.int64) % SECTORS
     low = cell.min(axis=0, initial=np.iinfo(np.int64).max)
     height = cell[:, 1].max(initial=low[1]) - low[1] + 1
-    group, codes = _numbered(((cell[:, 0] - low[0]) * height + cell[:, 1] - low[1]) * SECTORS + sector)
+    group, codes = numbered(((cell[:, 0] - low[0]) * height + cell[:, 1] - low[1]) * SECTORS + sector)
     rising = np.argsort(codes)
     rank = np.empty(len(codes), dtype=np.int64)
     rank[rising] = np.arange(len(codes))
@@ -86,7 +86,7 @@ def _grouped(points: Floats, normals: Floats, grid: CellGrid) -> tuple[Ints, Int
 
 
 @njit(cache=True)
-def _numbered(codes):  # type: ignore[no-untyped-def]
+def numbered(codes):  # type: ignore[no-untyped-def]
     """Number (n,) of every code in the order of first sight, and the codes so numbered: a table with open addresses."""
     size = 16
     while size < 2 * len(codes):

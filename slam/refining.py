@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from backend.joint_refinement import Chain, RefinementSettings, Sheaf, refine
+from backend.face_cells import Sheaf
+from backend.joint_refinement import Chain, RefinementSettings, refine
 from backend.odometry import Move, Odometry
 from frontend.rigid_motion import between
 from frontend.scan import Floats

@@ -5,7 +5,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from backend.joint_refinement import Chain, Floats, RefinementSettings, Sheaf, _conjugate_gradients, refine
+from backend.face_cells import Sheaf
+from backend.joint_refinement import Chain, Floats, RefinementSettings, refine
 
 ROOM = ((0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0))
 SETTINGS = RefinementSettings()
@@ -68,7 +69,7 @@ def test_along_a_smooth_corridor_the_wheels_decide() -> None:
     sheaf = seen(true, points, normals, 0.01, rng)
     found = refine(disturbed, sheaf, wheels(true, np.full(3, 0.02)), SETTINGS)
     assert np.max(np.abs(found - true)[:, 1]) < 0.005
-    assert np.max(np.abs(found - true)[:, 0]) < 0.01
+    assert np.max(np.abs(found - true)[:, 0]) < 0.005  # noisy directions of the walls would draw it 2 cm astray
 
 
 def test_two_faces_of_a_thin_wall_are_never_one_line() -> None:
@@ -106,8 +107,11 @@ def test_faces_that_no_line_holds_leave_the_wheels_alone() -> None:
     assert refine(true, sheaf, wheels(true, np.full(3, 0.02)), SETTINGS) == pytest.approx(true)
 
 
-def test_rounded_numbers_take_a_few_more_steps_than_there_are_unknowns() -> None:
-    hilbert = 1.0 / (1.0 + np.add.outer(np.arange(9.0), np.arange(9.0))) + 1e-9 * np.eye(9)
-    right = np.ones(9)
-    found = _conjugate_gradients(lambda v: np.asarray(hilbert @ v), lambda v: v, right)
-    np.testing.assert_allclose(hilbert @ found, right, atol=1e-3)
+def test_the_order_of_the_surface_does_not_matter() -> None:
+    rng = np.random.default_rng(8)
+    true = drive(6)
+    disturbed = true + rng.normal(0, 0.01, true.shape)
+    sheaf, chain = seen(true, *walls(ROOM), 0.01, rng), wheels(true, np.array([0.1, 0.1, 0.05]))
+    shuffled = rng.permutation(len(sheaf.owner))
+    other = Sheaf(sheaf.points[shuffled], sheaf.normals[shuffled], sheaf.spread[shuffled], sheaf.owner[shuffled])
+    assert refine(disturbed, other, chain, SETTINGS) == pytest.approx(refine(disturbed, sheaf, chain, SETTINGS))
