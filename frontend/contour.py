@@ -39,6 +39,9 @@ class EdgeKind(IntEnum):
     DOOR_ARC = 4
 
 
+KINDS = np.array(
+    [ContourKind[kind.name] for kind in sorted(ReadingKind)], dtype=np.uint8
+)  # of points, by the reading's
 MOST_PACES = 2.5  # how many times its own length a pair of readings may be continued to foretell the next
 
 
@@ -106,9 +109,9 @@ class Contour:
 
     def _across(self, kept: Integers) -> Floats:
         """The noise along the beam, seen across the surface."""
-        beams = self.points[kept] - self.origin
-        beams /= np.linalg.norm(beams, axis=1, keepdims=True)
-        return np.asarray(self.spread[kept] * np.abs(np.sum(beams * self.normals[kept], axis=1)))
+        beams, normals = self.points[kept] - self.origin, self.normals[kept]
+        before = beams[:, 0] * normals[:, 0] + beams[:, 1] * normals[:, 1]
+        return np.asarray(self.spread[kept] * np.abs(before) / np.hypot(beams[:, 0], beams[:, 1]))
 
 
 def trace(fused: FusedScan, settings: ContourSettings) -> Contour:
@@ -121,11 +124,11 @@ def outline(fused: FusedScan, settings: ContourSettings) -> Contour:
     ends = fused.ranges[:, None] * np.column_stack([np.cos(fused.bearings), np.sin(fused.bearings)])
     edges = _edges_between(fused, ends, settings)
     reaches = fit_reaches(
-        fused.bearings, fused.ranges, fused.spread,
+        fused.scan.usual_step, fused.ranges, fused.spread,
         settings.surface_sureness, settings.surface_reach, settings.surface_widest,
     )  # fmt: skip
     normals, thickness, offset = line_fits(ends, edges == EdgeKind.REAL, reaches, np.zeros(2))
-    kinds, readings = _point_kinds(fused.kinds), np.arange(ends.shape[0])
+    kinds, readings = KINDS[fused.kinds], np.arange(ends.shape[0])
     spread = np.hypot(fused.spread, fused.doubt)
     if not fused.scan.full_turn:  # the view ends at the sensor, on both sides
         ends, kinds = np.vstack([ends, np.zeros(2)]), np.append(kinds, np.uint8(ContourKind.SIDE))
@@ -168,13 +171,6 @@ def filled(outline: Contour, spacing: float) -> Contour:
     )
 
 
-def _point_kinds(kinds: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    names = np.empty(len(ReadingKind), dtype=np.uint8)
-    for kind in ReadingKind:
-        names[kind] = ContourKind[kind.name]
-    return names[kinds]
-
-
 def _filler_counts(corners: Floats, edges: NDArray[np.uint8], spacing: float) -> Integers:
     """Fillers (n,) after each corner: none along the sides of the view, which are no boundary of anything."""
     lengths = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
@@ -185,18 +181,31 @@ def _filler_counts(corners: Floats, edges: NDArray[np.uint8], spacing: float) ->
 
 def _edges_between(fused: FusedScan, ends: Floats, settings: ContourSettings) -> NDArray[np.uint8]:
     """EdgeKind (n,) of the edge from each reading to the next; the last one closes the turn or is a side."""
-    kinds, following = fused.kinds, np.roll(fused.kinds, -1)
-    edges = np.full(kinds.size, EdgeKind.OCCLUSION, dtype=np.uint8)
     continuous = surface_steps(
         fused.bearings, ends, fused.spread * settings.noise_gate, settings.least_grazing, settings.longest_gap
     )
-    measured = kinds == ReadingKind.MEASURED
-    edges[continuous & measured & np.roll(measured, -1)] = EdgeKind.REAL
-    for unmet in (ReadingKind.NO_RETURN, ReadingKind.INFERRED):  # no surface answered from there
-        edges[(kinds == unmet) | (following == unmet)] = EdgeKind.NO_RETURN
-    edges[(kinds == ReadingKind.DOOR_ARC) & (following == ReadingKind.DOOR_ARC)] = EdgeKind.DOOR_ARC
-    if not fused.scan.full_turn:
-        edges[-1] = EdgeKind.SIDE
+    return _edge_kinds(fused.kinds, continuous, fused.scan.full_turn)
+
+
+@compiled
+def _edge_kinds(kinds: NDArray[np.uint8], continuous: Booleans, full_turn: bool) -> NDArray[np.uint8]:
+    """EdgeKind (n,) by the ReadingKind (n,) at both ends, and whether (n,) one surface can hold both."""
+    n = kinds.size
+    edges = np.full(n, EdgeKind.OCCLUSION, dtype=np.uint8)
+    for i in range(n):
+        here, there = kinds[i], kinds[(i + 1) % n]
+        if here == ReadingKind.DOOR_ARC and there == ReadingKind.DOOR_ARC:
+            edges[i] = EdgeKind.DOOR_ARC
+        # No surface answered from there.
+        elif here in (ReadingKind.NO_RETURN, ReadingKind.INFERRED) or there in (
+            ReadingKind.NO_RETURN,
+            ReadingKind.INFERRED,
+        ):
+            edges[i] = EdgeKind.NO_RETURN
+        elif continuous[i] and here == ReadingKind.MEASURED and there == ReadingKind.MEASURED:
+            edges[i] = EdgeKind.REAL
+    if not full_turn:
+        edges[n - 1] = EdgeKind.SIDE
     return edges
 
 

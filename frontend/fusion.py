@@ -1,6 +1,6 @@
 """The fused scan: sonar and infrared combined by the three rules, with the beam undone (Flynn 1988, §3.3).
 
-A scan without infrared, or without a beam to undo, passes through the same steps and keeps its ranges.
+A scan without infrared, and without a beam to undo, keeps its ranges.
 """
 
 from dataclasses import dataclass, field
@@ -80,8 +80,10 @@ class FusedScan:
 
 
 def fuse(scan: Scan, settings: FusionSettings) -> FusedScan:
-    """Judge each reading, undo the beam, then redraw what the infrared opens."""
+    """Judge each reading, undo the beam, then redraw what the infrared opens; a thin beam has nothing to undo."""
     kinds, reasons = _judge(scan, settings)
+    if scan.sensor.half_beam <= 0 and scan.infrared is None:
+        return _unchanged(scan, kinds, reasons, settings)
     measured = kinds == ReadingKind.MEASURED
     opened = undo_beam(
         scan.bearings,
@@ -106,12 +108,27 @@ def fuse(scan: Scan, settings: FusionSettings) -> FusedScan:
     vouched = ranges
     ranges, kinds = _with_corners(ranges, kinds, scan)
     ranges, vouched, kinds = _up_to_mirrors(ranges, vouched, kinds, (scan, settings.mirrors))
-    spread = np.full(ranges.size, np.hypot(scan.sensor.range_noise, scan.sensor.quantum / np.sqrt(12)))
     moved = np.where(kinds == ReadingKind.MEASURED, ranges - scan.ranges, 0.0)
     return FusedScan(
-        scan, scan.bearings, ranges, scan.ranges, vouched, kinds, spread, settings.beam_doubt * np.nan_to_num(moved),
+        scan, scan.bearings, ranges, scan.ranges, vouched, kinds, _spread(scan),
+        settings.beam_doubt * np.nan_to_num(moved),
         tuple(edges), tuple(openings), _jambs(openings, ranges, scan), reasons,
     )  # fmt: skip
+
+
+def _unchanged(scan: Scan, kinds: NDArray[np.uint8], reasons: dict[int, str], settings: FusionSettings) -> FusedScan:
+    """A scan of thin beams without infrared: there is no beam to undo, nothing to redraw and nothing to infer."""
+    measured = np.where(kinds == ReadingKind.MEASURED, scan.ranges, np.nan)
+    ranges = _filled(measured, kinds, scan, settings)
+    return FusedScan(
+        scan, scan.bearings, ranges, scan.ranges, ranges, kinds, _spread(scan), np.zeros(ranges.size),
+        (), (), np.empty((0, 2, 2)), reasons,
+    )  # fmt: skip
+
+
+def _spread(scan: Scan) -> Floats:
+    """(n,) standard deviation along the beam: noise and rounding."""
+    return np.full(scan.ranges.size, float(np.hypot(scan.sensor.range_noise, scan.sensor.quantum / np.sqrt(12))))
 
 
 def _judge(scan: Scan, settings: FusionSettings) -> tuple[NDArray[np.uint8], dict[int, str]]:
@@ -136,10 +153,9 @@ def _judge(scan: Scan, settings: FusionSettings) -> tuple[NDArray[np.uint8], dic
 
 def _spikes(scan: Scan, measured: Booleans, settings: FusionSettings) -> Booleans:
     """Lone far readings of a wide beam (n,): specular losses, which undoing the beam would spread over a window."""
-    ranges = np.where(measured, scan.ranges, np.nan)
-    spikes = np.zeros(ranges.size, dtype=bool)
     if scan.sensor.half_beam <= 0:
-        return spikes
+        return np.zeros(scan.ranges.size, dtype=bool)
+    ranges = np.where(measured, scan.ranges, np.nan)
     reach = settings.spike_readings
     padded = np.pad(ranges, reach, mode="wrap") if scan.full_turn else np.pad(ranges, reach, constant_values=np.nan)
     before = np.stack([padded[k : k + ranges.size] for k in range(reach)])

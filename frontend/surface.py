@@ -25,16 +25,19 @@ class Surface:
     @cached_property
     def usual_spread(self) -> float:
         """The median of the spread, metres; 0 without surface."""
-        return float(np.median(self.spread)) if len(self.spread) else 0.0
+        if len(self.spread) == 0:
+            return 0.0
+        spread = np.sort(self.spread)  # np.median takes ten times as long on so few
+        return float(spread[(len(spread) - 1) // 2] + spread[len(spread) // 2]) / 2
 
 
-def fit_reaches(bearings: Floats, ranges: Floats, spread: Floats, surest: float, least: int, widest: float) -> Integers:
-    """How many neighbours (n,) to each side a line fit needs to know its direction to `surest` radians.
+def fit_reaches(step: float, ranges: Floats, spread: Floats, surest: float, least: int, widest: float) -> Integers:
+    """How many neighbours (n,) to each side, `step` radians apart, a line fit needs to know its direction to `surest`.
 
     The direction of n readings over a length L has the standard deviation σ√12 / (L√n); fine beams on near walls need
     many of them. Never under `least` neighbours nor over `widest` metres to a side.
     """
-    steps = np.maximum(ranges * np.median(np.diff(bearings)), 1e-6)
+    steps = np.maximum(ranges * step, 1e-6)
     needed = (np.sqrt(12) * spread / (surest * 2 * np.sqrt(2) * steps)) ** (2 / 3)
     reaches: Integers = np.maximum(np.ceil(np.minimum(needed, widest / steps)), least).astype(np.int64)
     return reaches
