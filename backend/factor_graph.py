@@ -162,16 +162,23 @@ class FactorGraph:
         self._fresh = gtsam.Values()
         self._values = self._tree.calculateEstimate()
 
+    def believe(self, newest: int) -> None:
+        """Take the newest so many loops at their word, once; `solve` then starts where they hold.
+
+        A robust kernel lets go of what is far off, however sure it is: a drive closed late would stay half open.
+        """
+        at_their_word = gtsam.NonlinearFactorGraph(self._graph)
+        for fixed, moving, pose, information in self._loops[-newest:]:
+            noise = gtsam.noiseModel.Gaussian.Information(information)
+            at_their_word.add(gtsam.BetweenFactorPose2(X(fixed), X(moving), pose, noise))
+        self._values = self._best(at_their_word, self.settings.settled)
+
     def solve(self, settled: float | None = None) -> None:
         """Levenberg–Marquardt from the current estimates, where the incremental solver starts again.
 
         settled: the relative fall of the error that ends it, where that of the settings is too coarse.
         """
-        parameters = gtsam.LevenbergMarquardtParams()
-        parameters.setMaxIterations(self.settings.iterations)
-        parameters.setRelativeErrorTol(settled or self.settings.settled)
-        parameters.setlambdaInitial(1e-6)
-        self._values = gtsam.LevenbergMarquardtOptimizer(self._graph, self._values, parameters).optimize()
+        self._values = self._best(self._graph, settled or self.settings.settled)
         self._tree, self._taken, self._fresh = gtsam.ISAM2(_tree_parameters()), 0, gtsam.Values(self._values)
 
     def carry(self, poses: dict[int, Floats], freed: int) -> None:
@@ -223,6 +230,13 @@ class FactorGraph:
             raise GraphError(f"{len(self._poses)} poses, but no anchor: nothing says where they are")
         marginals = gtsam.Marginals(self._graph, self._values)
         return np.array([marginals.marginalCovariance(X(i)) for i in self._poses]).reshape(-1, 3, 3)
+
+    def _best(self, graph: gtsam.NonlinearFactorGraph, settled: float) -> gtsam.Values:
+        parameters = gtsam.LevenbergMarquardtParams()
+        parameters.setMaxIterations(self.settings.iterations)
+        parameters.setRelativeErrorTol(settled)
+        parameters.setlambdaInitial(1e-6)
+        return gtsam.LevenbergMarquardtOptimizer(graph, self._values, parameters).optimize()
 
     def _insert(self, key: int, value: gtsam.Pose2 | Floats) -> None:
         self._values.insert(key, value)

@@ -57,6 +57,26 @@ class LandmarkMap:
         return self._rows[: len(self._sightings), :2]
 
     @property
+    def turns(self) -> Floats:
+        """(l,) how far the walls of each turn, counter-clockwise."""
+        return self._rows[: len(self._sightings), _ROW["turn"]]
+
+    @property
+    def headings(self) -> Floats:
+        """(l,) where the bisector of each looks to, into free space."""
+        return self._rows[: len(self._sightings), _ROW["heading"]]
+
+    @property
+    def first_seen(self) -> Integers:
+        """(l,) the pose that saw each of them first."""
+        return self._rows[: len(self._sightings), _ROW["pose"]].astype(np.int64)
+
+    @property
+    def last_seen(self) -> Integers:
+        """(l,) and the pose that did last."""
+        return np.array([seen[-1].pose for seen in self._sightings], np.int64)
+
+    @property
     def counts(self) -> Integers:
         """How often each landmark was seen, (l,)."""
         return np.array([len(seen) for seen in self._sightings], np.int64)

@@ -23,6 +23,8 @@ class LoopSettings:
     near: float = 2.0  # metres between two such points with no doubt at all; larger tries more candidates
     sigmas: float = 3.0  # of doubt that the search covers; larger finds loops after more drift
     widest: float = 6.0  # metres at most; larger searches longer and mistakes more
+    turned: float = 0.6  # radians at most; larger does the same
+    confirmed: float = 3.0  # metres between two views that confirm a doubted loop; larger asks for more new surface
     apart: int = 12  # poses between two candidates; larger tries fewer
     at_once: int = 2  # candidates tried per pose; larger closes more loops
     skipped: int = 25  # newest poses that are no loop; larger leaves short loops to registration
@@ -30,11 +32,15 @@ class LoopSettings:
 
 @dataclass(frozen=True)
 class Candidate:
-    """An earlier pose (its place in the graph) and the window around it: metres and radians."""
+    """An earlier pose (its place in the graph) and the window around it: metres and radians.
+
+    covered: whether the newest pose must be in there, for all that is known.
+    """
 
     pose: int
     metres: float
     radians: float
+    covered: bool = True
 
 
 class Drift:
@@ -69,26 +75,62 @@ class Drift:
         return np.asarray(np.sqrt(least_sums(ends, variances[:, 1].copy(), newest, count)))
 
 
-def candidates(poses: Floats, drift: Drift, settings: LoopSettings) -> list[Candidate]:
-    """Earlier poses that the newest of poses (n, 3) may be looking at again, the nearest first."""
+@dataclass(frozen=True, eq=False)
+class Outlook:
+    """What the newest pose may be looking at again: all earlier poses, by what is known of the way between them.
+
+    gaps: (n,) metres between what each looks at and what the newest does. doubts: (n,) metres that this may be wrong
+    by. earlier: (n,) whether a pose is old enough for a loop.
+    """
+
+    gaps: Floats
+    doubts: Floats
+    earlier: NDArray[np.bool_]
+
+
+def outlook(poses: Floats, drift: Drift, settings: LoopSettings) -> Outlook:
+    """Of the newest of poses (n, 3), at least one."""
     newest = len(poses) - 1
-    if newest < settings.skipped:
-        return []
-    place = drift.place_from(newest, poses[:, :2])
     ahead = poses[:, :2] + settings.ahead * np.column_stack([np.cos(poses[:, 2]), np.sin(poses[:, 2])])
     gaps = np.linalg.norm(ahead - ahead[-1], axis=1)
-    doubts = np.minimum(settings.sigmas * place, settings.widest)
-    possible = np.flatnonzero((np.arange(newest + 1) < newest - settings.skipped) & (gaps < settings.near + doubts))
+    doubts = settings.sigmas * drift.place_from(newest, poses[:, :2])
+    return Outlook(gaps, doubts, np.arange(newest + 1) < newest - settings.skipped)
+
+
+def candidates(seen: Outlook, drift: Drift, settings: LoopSettings) -> list[Candidate]:
+    """Earlier poses around which the newest can be searched for, the nearest first."""
+    count = len(seen.gaps)
+    doubts = np.minimum(seen.doubts, settings.widest)
+    possible = np.flatnonzero(seen.earlier & (seen.gaps < settings.near + doubts))
     chosen: list[int] = []
-    for pose in possible[np.argsort(gaps[possible], kind="stable")]:
+    for pose in possible[np.argsort(seen.gaps[possible], kind="stable")]:
         if all(abs(pose - other) > settings.apart for other in chosen):
             chosen.append(int(pose))
         if len(chosen) == settings.at_once:
             break
     if not chosen:
         return []
-    heading = drift.heading_from(newest, len(poses))
-    return [Candidate(pose, float(doubts[pose]), float(min(settings.sigmas * heading[pose], 0.6))) for pose in chosen]
+    heading = settings.sigmas * drift.heading_from(count - 1, count)
+    return [
+        Candidate(
+            pose,
+            float(doubts[pose]),
+            float(min(heading[pose], settings.turned)),
+            bool(seen.doubts[pose] <= settings.widest and heading[pose] <= settings.turned),
+        )
+        for pose in chosen
+    ]
+
+
+def beyond_search(seen: Outlook, drift: Drift, settings: LoopSettings) -> list[Candidate]:
+    """Earlier poses that the newest may be looking at again although no search reaches as far as their doubt."""
+    count = len(seen.gaps)
+    reached = np.isfinite(seen.doubts) & seen.earlier & (seen.gaps < settings.near + seen.doubts)
+    far = np.flatnonzero(reached & (seen.doubts > settings.widest))
+    if not len(far):
+        return []
+    heading = np.minimum(settings.sigmas * drift.heading_from(count - 1, count), np.pi)
+    return [Candidate(int(pose), float(seen.doubts[pose]), float(heading[pose]), covered=False) for pose in far]
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]

@@ -10,6 +10,7 @@ door_edges     jambs tracked over scans
 contour        readings joined into a boundary, every edge real or a line of sight; surface for registration
 scale_space    the boundary's orientation at several scales; landmarks and jambs are what stands out
 primal_sketch  knots, fitted lines and the polyline between them; best_polylines draws a scan with few vertices
-matching       knots of two sketches paired: near by joint compatibility, lost by constellations
+matching       knots of two sketches paired: near by joint compatibility, lost by constellations;
+               corner_constellations lays corners of a newest submap on those of an old map
 registration   real surface laid on real surface; rigid_motion is the algebra of poses
 """

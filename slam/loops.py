@@ -1,5 +1,6 @@
 """Loops: a scan laid on an old submap, believed only when surface, visibility and geometry all agree."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -39,6 +40,10 @@ class Tried:
 
     fixed: int
     found: Alignment | str
+
+
+# Lays a scan, believed to be at a pose (3,), on old faces, as `close_loop` does.
+Verify = Callable[[Percept, Floats, Faces, Faces, tuple[float, float], VerificationSettings], Alignment | str]
 
 
 def close_loop(

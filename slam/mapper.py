@@ -10,8 +10,8 @@ from frontend.scan import Floats, Scan
 from slam.estimating import estimated
 from slam.keyframes import Keyframe
 from slam.logbook import Logbook
-from slam.loop_search import LoopSearch, Verify
-from slam.loops import close_loop
+from slam.loop_search import LoopSearch
+from slam.loops import Verify, close_loop
 from slam.mapper_settings import MapperSettings
 from slam.perception import FrontendSettings, Percept, perceive
 from slam.pose_graph import PoseGraph

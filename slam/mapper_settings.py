@@ -7,6 +7,7 @@ from backend.joint_refinement import RefinementSettings
 from backend.landmark_map import LandmarkSettings
 from backend.loop_closure import LoopSettings
 from backend.odometry import OdometrySettings
+from frontend.corner_constellations import ConstellationSettings
 from slam.arc_tracking import ArcTrackingSettings
 from slam.loops import VerificationSettings
 from slam.relocalisation import RelocalisationSettings
@@ -21,6 +22,7 @@ class MapperSettings:
     tracking: TrackingSettings = field(default_factory=TrackingSettings)
     loops: LoopSettings = field(default_factory=LoopSettings)
     verification: VerificationSettings = field(default_factory=VerificationSettings)
+    constellations: ConstellationSettings = field(default_factory=ConstellationSettings)
     relocalisation: RelocalisationSettings = field(default_factory=RelocalisationSettings)
     arcs: ArcTrackingSettings = field(default_factory=ArcTrackingSettings)
     landmarks: LandmarkSettings = field(default_factory=LandmarkSettings)

@@ -44,7 +44,7 @@ def relocalise(
     submap, reasons = Faces.together([keyframe.faces for keyframe in recent]), []
     number = len(old) - 1
     for start in _proposals(recent, submap, old, settings):
-        number = _nearest(start, old, settings.ahead)
+        number = nearest_view(start, old, settings.ahead)
         beside = around(old, number, verification.beside, verification.beside)
         there = Faces.together([keyframe.faces for keyframe in beside])
         found = close_loop(recent[-1].percept, start, submap, there, (0.0, 0.0), verification)
@@ -55,6 +55,13 @@ def relocalise(
         else:
             return Tried(number, found)
     return Tried(number, reasons[-1] if reasons else "no constellation of its knots and no place for its surface")
+
+
+def nearest_view(pose: Floats, keyframes: Sequence[Keyframe], ahead: float) -> int:
+    """The keyframe that looks at what a robot at `pose` (3,) looks at."""
+    poses = np.array([pose, *(keyframe.pose for keyframe in keyframes)])
+    looked = poses[:, :2] + ahead * np.column_stack([np.cos(poses[:, 2]), np.sin(poses[:, 2])])
+    return int(np.argmin(np.linalg.norm(looked[1:] - looked[0], axis=1)))
 
 
 def _proposals(
@@ -103,13 +110,6 @@ def _some(keyframes: list[Keyframe], count: int, turn: int) -> list[Keyframe]:
     """At most so many, evenly strewn, others at every turn."""
     stride = -(-len(keyframes) // count)
     return keyframes[turn % stride :: stride] if stride > 1 else keyframes
-
-
-def _nearest(pose: Floats, keyframes: Sequence[Keyframe], ahead: float) -> int:
-    """The keyframe that looks at what a robot at `pose` (3,) looks at."""
-    poses = np.array([pose, *(keyframe.pose for keyframe in keyframes)])
-    looked = poses[:, :2] + ahead * np.column_stack([np.cos(poses[:, 2]), np.sin(poses[:, 2])])
-    return int(np.argmin(np.linalg.norm(looked[1:] - looked[0], axis=1)))
 
 
 def _thinned(points: Floats, cell: float) -> Integers:

@@ -34,6 +34,19 @@ class Recognition:
         return compose(compose(keyframes[self.fixed].pose, self.pose), inverse(keyframes[self.moving].pose))
 
 
+def agreeing(
+    found: Recognition, doubted: Sequence[Recognition], keyframes: Sequence[Keyframe], within: tuple[float, float]
+) -> Recognition | None:
+    """The first of the doubted ones, between the same two frames, that says the same within metres and radians."""
+    here = keyframes[found.moving].pose
+    claim = compose(found.carry(keyframes), here)
+    for earlier in doubted:
+        off = between(claim, compose(earlier.carry(keyframes), here))
+        if np.hypot(*off[:2]) < within[0] and abs(off[2]) < within[1]:
+            return earlier
+    return None
+
+
 class Sessions:
     """Which sessions there are, and which share a frame: that of the earliest of them."""
 
@@ -74,16 +87,10 @@ class Sessions:
 
     def confirm(self, found: Recognition, keyframes: Sequence[Keyframe]) -> Recognition | None:
         """An earlier recognition that says the same from another place: two are believed, one is only remembered."""
-        here = keyframes[found.moving].pose
-        claim = compose(found.carry(keyframes), here)
-        for earlier in self._doubted:
-            moved = between(keyframes[earlier.moving].pose, here)
-            stood = np.hypot(*moved[:2]) < APART_METRES and abs(moved[2]) < APART_RADIANS
-            if stood or self._frames(earlier, keyframes) != self._frames(found, keyframes):
-                continue
-            off = between(claim, compose(earlier.carry(keyframes), here))
-            if np.hypot(*off[:2]) < AGREE_METRES and abs(off[2]) < AGREE_RADIANS:
-                return earlier
+        others = [one for one in self._doubted if self._another_view(one, found, keyframes)]
+        earlier = agreeing(found, others, keyframes, (AGREE_METRES, AGREE_RADIANS))
+        if earlier is not None:
+            return earlier
         self._doubted.append(found)
         return None
 
@@ -95,6 +102,12 @@ class Sessions:
         moved = [k for k, keyframe in enumerate(keyframes) if self._roots[keyframe.session] == gone]
         self._roots = [kept if root == gone else root for root in self._roots]
         return moved, carry
+
+    def _another_view(self, earlier: Recognition, found: Recognition, keyframes: Sequence[Keyframe]) -> bool:
+        """Whether they are of the same two frames, and from places or in directions that count as two."""
+        moved = between(keyframes[earlier.moving].pose, keyframes[found.moving].pose)
+        stood = np.hypot(*moved[:2]) < APART_METRES and abs(moved[2]) < APART_RADIANS
+        return not stood and self._frames(earlier, keyframes) == self._frames(found, keyframes)
 
     def _frames(self, found: Recognition, keyframes: Sequence[Keyframe]) -> tuple[int, int]:
         return self._roots[keyframes[found.fixed].session], self._roots[keyframes[found.moving].session]

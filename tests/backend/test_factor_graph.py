@@ -293,3 +293,19 @@ def test_a_finer_end_goes_on_where_a_coarser_one_stopped() -> None:
     assert np.abs(coarse.poses - fine.poses).max() > 1e-3
     coarse.solve(1e-9)
     assert np.allclose(coarse.poses, fine.poses, atol=1e-4)
+
+
+def test_a_loop_far_off_holds_once_it_was_taken_at_its_word() -> None:
+    """Forty sure steps and a loop ten doubts away: the robust kernel alone leaves it half open."""
+    graph = FactorGraph(GraphSettings())
+    graph.add_pose(0, np.zeros(3))
+    graph.anchor(0, np.zeros(3), np.eye(3) * 1e-6)
+    for k in range(1, 41):
+        graph.add_pose(k, np.array([0.1 * k, 0, 0]))
+        graph.add_motion(k - 1, k, np.array([0.1, 0, 0]), np.diag([0.15, 0.15, 0.02]) ** 2)
+    for k in (36, 40):
+        graph.add_loop(0, k, np.array([0.1 * (k - 40), 0, 0]), np.diag([0.01, 0.01, 0.005]) ** 2)
+    assert graph.solved().poses[-1, 0] > 1.0
+    graph.believe(2)
+    graph.solve()
+    assert abs(graph.poses[-1, 0]) < 0.05

@@ -7,8 +7,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from backend.loop_closure import Candidate, Drift, LoopSettings, candidates
+from backend.loop_closure import Candidate, Drift, LoopSettings, beyond_search, outlook
+from backend.loop_closure import candidates as candidates_of
 from frontend.scan import Floats
+
+
+def candidates(poses: Floats, drift: Drift, wanted: LoopSettings) -> list[Candidate]:
+    return candidates_of(outlook(poses, drift, wanted), drift, wanted)
+
+
+def beyond(poses: Floats, drift: Drift, wanted: LoopSettings) -> list[Candidate]:
+    return beyond_search(outlook(poses, drift, wanted), drift, wanted)
+
 
 STEP = np.diag([0.02, 0.02, 0.01]) ** 2
 SETTINGS = LoopSettings(skipped=10, apart=5)
@@ -123,3 +133,26 @@ def test_windows_are_so_many_sigmas_of_doubt_and_never_wider_than_allowed() -> N
     assert small.radians == pytest.approx(SETTINGS.sigmas * heading[0])
     wide = candidates(poses, chain(60, STEP * 1e4), SETTINGS)[0]
     assert wide.metres == SETTINGS.widest
+    assert small.covered
+    assert not wide.covered
+
+
+def test_what_no_window_covers_is_told_with_all_its_doubt() -> None:
+    """A poor odometry on a circle: its start may be anywhere; a sure one leaves nothing to be told."""
+    poses, poor = circle(60), chain(60, STEP * 1e3)
+    told = beyond(poses, poor, SETTINGS)
+    place = poor.place_from(59, poses[:, :2])
+    assert [one.pose for one in told] == list(range(len(told)))
+    assert all(one.metres == pytest.approx(SETTINGS.sigmas * place[one.pose]) for one in told)
+    assert min(one.metres for one in told) > SETTINGS.widest
+    assert not any(one.covered for one in told)
+    assert max(one.radians for one in told) <= np.pi
+    assert beyond(poses, chain(60), SETTINGS) == []
+
+
+def test_a_place_farther_off_than_its_doubt_is_not_told() -> None:
+    poses = straight(300)
+    drift = chain(300, STEP * 4)
+    told = {one.pose for one in beyond(poses, drift, SETTINGS)}
+    doubts = SETTINGS.sigmas * drift.place_from(299, poses[:, :2])
+    assert all(299 - pose < SETTINGS.near + doubts[pose] for pose in told)

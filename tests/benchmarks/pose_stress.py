@@ -16,8 +16,7 @@ from frontend.local_map import Faces
 from frontend.registration import Alignment
 from frontend.rigid_motion import between, compose
 from frontend.scan import Booleans, Floats, Integers, Scan
-from slam.loop_search import Verify
-from slam.loops import VerificationSettings, close_loop
+from slam.loops import VerificationSettings, Verify, close_loop
 from slam.mapper import Mapper
 from slam.perception import Percept
 from slam.recordings import open_recording

@@ -1,0 +1,85 @@
+"""The search for loops by constellations: where so much is doubted that no window covers it, corners say where.
+
+The corners of the newest submap are laid on those of old places. What they propose must pass the test of a loop and
+be known in every direction, and is a doubted loop even then.
+"""
+
+import numpy as np
+
+from backend.loop_closure import Candidate
+from frontend.corner_constellations import PlacedCorners, poses_of_corners
+from frontend.local_map import Faces
+from frontend.registration import Alignment
+from frontend.rigid_motion import between
+from frontend.scan import Booleans, Floats
+from slam.doubted_loops import DoubtedLoops
+from slam.keyframes import around
+from slam.logbook import Logbook
+from slam.loops import Tried, Verify
+from slam.mapper_settings import MapperSettings
+from slam.relocalisation import nearest_view
+
+
+class ConstellationSearch:
+    """Looks for the newest keyframe among old ones that may be anywhere. verify: as for other loops."""
+
+    def __init__(self, settings: MapperSettings, doubted: DoubtedLoops, logbook: Logbook, verify: Verify) -> None:
+        self.settings, self.verify = settings, verify
+        self._graph, self._doubted, self._logbook = doubted.graph, doubted, logbook
+
+    def find(self, old: list[Candidate]) -> bool:
+        """Look for the newest keyframe at these places; whether it was found, and the graph solved anew."""
+        if not old:
+            return False
+        graph, newest = self._graph, self._graph.keyframes[-1]
+        for tried in self._logbook.answer(lambda: self._tried(old)):
+            if isinstance(tried.found, str):
+                graph.refuse("loop", (graph.keyframes[tried.fixed].scan, newest.scan), tried.found)
+            elif self._doubted.weigh(tried.fixed, tried.found, proposes=True):
+                return True
+        return False
+
+    def _tried(self, old: list[Candidate]) -> tuple[Tried, ...]:
+        """The places that constellations propose and what was found there, until one holds."""
+        settings, graph = self.settings, self._graph
+        newest, tried = graph.keyframes[-1], []
+        window = (max(one.metres for one in old), max(one.radians for one in old))
+        recent = Faces.together([keyframe.faces for keyframe in graph.last(settings.verification.beside)])
+        there = [graph.keyframes[one.pose] for one in old]
+        for pose in poses_of_corners(*self._corners(old), newest.pose, window, settings.constellations):
+            nearest = old[nearest_view(pose, there, settings.loops.ahead)]
+            tried.append(Tried(nearest.pose, self._verified(nearest, pose, recent)))
+            if not isinstance(tried[-1].found, str):
+                break
+        return tuple(tried)
+
+    def _corners(self, old: list[Candidate]) -> tuple[PlacedCorners, PlacedCorners]:
+        """The corners first seen from the old places, and those seen from the newest keyframes."""
+        known = self._graph.landmarks
+        proven = known.counts >= self.settings.landmarks.proven
+        recent = len(self._graph.keyframes) - self.settings.constellations.recent
+        places = np.array([one.pose for one in old])
+        return self._those(proven & np.isin(known.first_seen, places)), self._those(
+            proven & (known.last_seen >= recent)
+        )
+
+    def _those(self, which: Booleans) -> PlacedCorners:
+        known = self._graph.landmarks
+        return PlacedCorners(known.positions[which], known.turns[which], known.headings[which])
+
+    def _verified(self, candidate: Candidate, pose: Floats, recent: Faces) -> Alignment | str:
+        """The newest scan laid on the old place from a proposed pose (3,)."""
+        settings, graph = self.settings.verification, self._graph
+        believed, percept = graph.keyframes[-1].pose, graph.keyframes[-1].percept
+        off = between(believed, pose)
+        metres, radians = float(np.hypot(*off[:2])), abs(float(off[2]))
+        near = self.settings.loops.near
+        if metres > candidate.metres + near or radians > candidate.radians:
+            limit = f"{candidate.metres + near:.1f} m and {np.degrees(candidate.radians):.0f}°"
+            return f"its corners ask for {metres:.1f} m and {np.degrees(radians):.0f}° more than is believed ({limit})"
+        beside = around(graph.keyframes, candidate.pose, settings.beside, settings.beside)
+        old = Faces.together([keyframe.faces for keyframe in beside])
+        found = self.verify(percept, pose, recent, old, (0.0, 0.0), settings)
+        if isinstance(found, str) or found.firmness >= settings.firmness:
+            return found
+        return f"free to slide along one direction (firmness {found.firmness:.2f}), and nothing says where"

@@ -1,0 +1,84 @@
+"""Doubted loops: one waits, a second that says the same from elsewhere is believed with it, and the drive closes."""
+
+import numpy as np
+import pytest
+
+from backend.loop_closure import LoopSettings
+from frontend.registration import Alignment
+from frontend.rigid_motion import between, compose
+from frontend.scan import Floats
+from slam.doubted_loops import DoubtedLoops
+from slam.keyframes import Keyframe
+from slam.mapper_settings import MapperSettings
+from slam.perception import FrontendSettings, perceive
+from slam.pose_graph import PoseGraph
+from tests.simulated_drives import drive, once_round, round_building
+
+PERCEPT = perceive(drive(round_building(), once_round()[:1], seed=0)[0], FrontendSettings())
+DRIFT = np.diag([0.3, 0.3, 0.02]) ** 2
+SURE = np.diag([0.01, 0.01, 0.005]) ** 2
+OFF = np.array([8.0, 1.0, 0.0])  # by which the drive's end is believed to be elsewhere
+
+
+def out_and_back() -> PoseGraph:
+    """Forty metres out and as many back on the same way, and the end believed to be off."""
+    graph = PoseGraph(MapperSettings())
+    graph.begin_session(0, PERCEPT)
+    for new in range(1, 80):
+        true = np.array([new if new < 40 else 79.0 - new, 0.0, 0.0])
+        pose = true + max(new - 30, 0) / 49 * OFF
+        extended(graph, pose)
+    return graph
+
+
+def extended(graph: PoseGraph, pose: Floats) -> None:
+    new, step = len(graph.keyframes), between(graph.keyframes[-1].pose, pose)
+    graph.factors.add_pose(new, pose)
+    graph.factors.add_motion(new - 1, new, step, DRIFT)
+    graph.drift.add(new - 1, new, DRIFT)
+    graph.add_keyframe(Keyframe(new, 0, PERCEPT, pose))
+
+
+def seen_from(graph: PoseGraph, fixed: int, ahead: float, lie: float = 0.0) -> Alignment:
+    """The newest keyframe truly stands `ahead` metres before the fixed one."""
+    pose = compose(graph.keyframes[fixed].pose, np.array([ahead + lie, 0.0, 0.0]))
+    return Alignment(pose, np.asarray(np.linalg.inv(SURE)), np.empty((0, 2), np.int64), 0.01, 0.95, 0.5)
+
+
+def test_a_lone_doubted_loop_waits_and_moves_nothing() -> None:
+    graph = out_and_back()
+    before = graph.keyframe_poses
+    assert not DoubtedLoops(graph, LoopSettings()).weigh(0, seen_from(graph, 0, 0.0), proposes=True)
+    np.testing.assert_array_equal(graph.keyframe_poses, before)
+    assert [(one.what, one.scans, one.accepted) for one in graph.decisions] == [("loop", (0, 79), False)]
+
+
+@pytest.mark.parametrize("step", [-4.0, 4.0])
+def test_two_from_different_places_that_agree_close_the_drive(step: float) -> None:
+    graph = out_and_back()
+    loops = DoubtedLoops(graph, LoopSettings())
+    loops.weigh(5, seen_from(graph, 5, -5.0), proposes=True)
+    extended(graph, compose(graph.keyframes[-1].pose, np.array([step, 0.0, 0.0])))
+    assert loops.weigh(5, seen_from(graph, 5, step - 5.0), proposes=True)
+    assert [one.accepted for one in graph.decisions] == [False, True]
+    np.testing.assert_allclose(graph.keyframe_poses[[79, 80], :2], np.array([[0.0, 0.0], [step, 0.0]]), atol=0.3)
+
+
+@pytest.mark.parametrize(("step", "lie"), [(1.0, 0.0), (5.0, 3.0)])
+def test_a_second_one_from_the_same_place_or_that_says_something_else_confirms_nothing(step: float, lie: float) -> None:
+    graph = out_and_back()
+    loops = DoubtedLoops(graph, LoopSettings())
+    loops.weigh(5, seen_from(graph, 5, -5.0), proposes=True)
+    extended(graph, compose(graph.keyframes[-1].pose, np.array([step, 0.0, 0.0])))
+    assert not loops.weigh(5, seen_from(graph, 5, step - 5.0, lie), proposes=True)
+    assert not any(one.accepted for one in graph.decisions)
+
+
+def test_what_was_found_in_too_small_a_window_confirms_but_never_waits() -> None:
+    graph = out_and_back()
+    loops = DoubtedLoops(graph, LoopSettings())
+    loops.weigh(5, seen_from(graph, 5, -5.0), proposes=False)
+    extended(graph, compose(graph.keyframes[-1].pose, np.array([4.0, 0.0, 0.0])))
+    assert not loops.weigh(5, seen_from(graph, 5, -1.0), proposes=True)
+    extended(graph, compose(graph.keyframes[-1].pose, np.array([4.0, 0.0, 0.0])))
+    assert loops.weigh(5, seen_from(graph, 5, 3.0), proposes=False)
