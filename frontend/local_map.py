@@ -5,7 +5,7 @@ from typing import Self
 
 import numpy as np
 
-from frontend.point_to_line import faces_towards, sort_into_cells
+from frontend.point_to_line import faces_towards, in_order, sort_into_cells
 from frontend.rigid_motion import rotation, transform
 from frontend.scan import Floats, Integers
 from frontend.surface import Surface
@@ -53,4 +53,4 @@ class LocalMap:
     def of(cls, faces: Faces) -> Self:
         """Prepare faces, at least one."""
         order, first, corner, columns, rows = sort_into_cells(faces.points, CELL)
-        return cls(Faces(faces.points[order], faces.normals[order]), first, corner, columns, rows)
+        return cls(Faces(*in_order(faces.points, faces.normals, order)), first, corner, columns, rows)

@@ -145,6 +145,36 @@ def descend(
 
 
 @compiled
+def in_order(points: Floats, normals: Floats, order: Integers) -> tuple[Floats, Floats]:
+    """The points and normals (k, 2) in another order (k,)."""
+    sorted_points, sorted_normals = np.empty_like(points), np.empty_like(normals)
+    for k in range(len(order)):
+        for axis in range(2):
+            sorted_points[k, axis], sorted_normals[k, axis] = points[order[k], axis], normals[order[k], axis]
+    return sorted_points, sorted_normals
+
+
+@compiled
+def paired(
+    own: Floats, readings: Integers, points: Floats, normals: Floats, partners: Integers, pose: Floats, lags: int
+) -> tuple[Integers, float]:
+    """Pairs (p, 2) of own points (n, 2) at `pose` and partners (n,), and how many of their errors are worth one."""
+    count = int(np.count_nonzero(partners >= 0))
+    pairs, errors, read = np.empty((count, 2), np.int64), np.empty(count), np.empty(count, np.int64)
+    cosine, sine = np.cos(pose[2]), np.sin(pose[2])
+    k = 0
+    for i in range(len(partners)):
+        j = partners[i]
+        if j >= 0:
+            x = cosine * own[i, 0] - sine * own[i, 1] + pose[0] - points[j, 0]
+            y = sine * own[i, 0] + cosine * own[i, 1] + pose[1] - points[j, 1]
+            pairs[k, 0], pairs[k, 1] = i, j
+            errors[k], read[k] = x * normals[j, 0] + y * normals[j, 1], readings[i]
+            k += 1
+    return pairs, shared_errors(errors, read, lags)
+
+
+@compiled
 def shared_errors(errors: Floats, readings: Integers, lags: int) -> float:
     """How many of the errors (p,) at rising readings (p,) are worth one that is independent of all others, 1 or more.
 

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frontend.local_map import CELL, Faces, LocalMap
-from frontend.point_to_line import descend, shared_errors
-from frontend.rigid_motion import rotation, transform
+from frontend.point_to_line import descend, paired
+from frontend.rigid_motion import rotation
 from frontend.scan import Floats
 from frontend.surface import Surface
 
@@ -93,26 +93,20 @@ def register(
         local_map.first, local_map.corner, local_map.columns, local_map.rows,
         guess.pose if start is None else start, guess.pose, guess.information, passes,
     )  # fmt: skip
-    matched = np.flatnonzero(partners >= 0)
-    errors = _errors(surface.points[matched], pose, faces, partners[matched])
-    shared = shared_errors(errors, surface.reading[matched], settings.alike_beams)
+    pairs, shared = paired(
+        surface.points, surface.reading, faces.points, faces.normals, partners, pose, settings.alike_beams
+    )
     believed = information / (max(square, spread**2, settings.finest**2) * shared)
     middle = (information[0, 0] + information[1, 1]) / 2
     apart = float(np.hypot((information[0, 0] - information[1, 1]) / 2, information[0, 1]))
     return Alignment(
         pose,
         believed,
-        np.column_stack([matched, partners[matched]]),
+        pairs,
         float(np.sqrt(square)),
-        len(matched) / max(len(partners), 1),
+        len(pairs) / max(len(partners), 1),
         max(float(middle) - apart, 0.0) / max(float(middle) + apart, 1e-12),
     )
-
-
-def _errors(points: Floats, pose: Floats, faces: Faces, partners: NDArray[np.int64]) -> Floats:
-    """How far (p,) the points (p, 2) at a pose (3,) lie before their partners' faces, metres."""
-    offsets = transform(points, pose) - faces.points[partners]
-    return np.asarray(np.einsum("ij,ij->i", offsets, faces.normals[partners]))
 
 
 def register_submaps(moving: Faces, fixed: Faces, guess: Floats, reach: float) -> Floats:

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import least_squares
 
 from frontend.local_map import CELL, Faces, LocalMap
-from frontend.point_to_line import descend, nearest_face, shared_errors, sort_into_cells
+from frontend.point_to_line import descend, nearest_face, paired, shared_errors, sort_into_cells
 from frontend.rigid_motion import rotation, transform
 from frontend.scan import Floats
 
@@ -141,3 +141,14 @@ def test_only_readings_that_far_apart_are_compared() -> None:
     assert shared_errors(errors, far, 6) == 1.0
     assert shared_errors(errors, near, 1) == pytest.approx(1.0, abs=0.02)
     assert shared_errors(np.ones(200), near, 3) == pytest.approx(7.0)
+
+
+def test_pairs_leave_out_what_has_no_partner_and_their_errors_are_those_across_the_faces() -> None:
+    """Errors of one size and sign at successive readings are one error; alone, each counts for itself."""
+    fixed = corner_faces(40)
+    own, partners = fixed.points + np.array([0.0, 0.01]), np.arange(120)
+    partners[5:9] = -1
+    pairs, shared = paired(own, partners, fixed.points, fixed.normals, partners, np.zeros(3), 2)
+    np.testing.assert_array_equal(pairs, np.column_stack([np.flatnonzero(partners >= 0)] * 2))
+    assert shared == pytest.approx(5.0, rel=0.1)
+    assert paired(own, 10 * np.arange(120), fixed.points, fixed.normals, partners, np.zeros(3), 2)[1] == 1.0
