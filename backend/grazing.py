@@ -20,23 +20,30 @@ from backend.wall_faces import WallFaces
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
-STEEPEST = np.radians(65)  # off a wall's normal, to which even smooth walls answer a beam close by
-ANSWERED = 0.9  # of what was measured of a mirror, that lies within the angle off its normal to which it answers
-SEEN_THROUGH = 0.05  # beams aslant through a wall's measured places, by its samples, that make it a mirror,
-STRAY = 5  # beyond so many that stray past any wall's end
-LEAST = 0.30  # metres of face from which on its line is followed
-BEHIND = 0.10  # metres behind a line that must be free for an opening, and before it
 PAST = 0.05  # metres behind a line that are but the noise of what was measured on it
+
+
+@dataclass(frozen=True)
+class GrazingSettings:
+    """Opinions about mirrors."""
+
+    steepest: float = 65.0  # degrees off a wall's normal to which even smooth walls answer; larger finds fewer mirrors
+    answered: float = 0.9  # of what was measured of a mirror, that it answers; larger lets it answer more aslant
+    seen_through: float = 0.05  # beams aslant through a wall by its samples; larger asks more of them for a mirror
+    stray: int = 5  # such beams pass any wall's end; larger asks more of them beside a short wall
+    least: float = 0.30  # metres of face; larger follows the lines of longer walls only
+    behind: float = 0.10  # metres free before and behind a line; larger takes only deeper gaps for openings
 
 
 @dataclass(frozen=True, eq=False)
 class Walls:
     """Faces, the cosine (f,) of the angle off its normal to which each answers, and the sight of all views, which
-    says where their lines are open."""
+    says where their lines are open; settings: by which they were told."""
 
     faces: WallFaces
     answers: Floats
     sight: Sight
+    settings: GrazingSettings
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,22 +59,25 @@ class _Crossings:
         return _Crossings(self.beam[chosen], self.face[chosen], self.share[chosen], self.points[chosen])
 
 
-def walls_of(faces: WallFaces, samples: Samples, rings: list[Floats], origins: Floats) -> Walls:
+def walls_of(
+    faces: WallFaces, samples: Samples, rings: list[Floats], origins: Floats, settings: GrazingSettings
+) -> Walls:
     """The walls that placed samples and rings, each (m, 2), of all views tell; origins: (v, 2) of the views."""
-    mirror, measured = _answers(samples, origins, faces), _places(samples.points, faces.label, faces)
+    mirror, measured = _answers(samples, origins, faces, settings), _places(samples.points, faces.label, faces)
     through = np.zeros(len(mirror))
     for ring, origin in zip(rings, origins, strict=True):
-        aslant = _crossings(ring, origin, faces, mirror)
+        aslant = _crossings(ring, origin, (faces, mirror), settings.least)
         passed = np.isin(_places(aslant.points, aslant.face, faces), measured)
         through += np.bincount(aslant.face[passed], minlength=len(mirror))
     number = np.bincount(faces.label[faces.label >= 0], minlength=len(mirror))
-    cosines = np.where(through > STRAY + SEEN_THROUGH * number, mirror, np.cos(STEEPEST))
-    return Walls(faces, cosines, sight_of(rings, origins))
+    mirrors = through > settings.stray + settings.seen_through * number
+    cosines = np.where(mirrors, mirror, np.cos(np.radians(settings.steepest)))
+    return Walls(faces, cosines, sight_of(rings, origins), settings)
 
 
 def up_to_mirrors(near: Floats, far: Floats, origin: Floats, walls: Walls) -> tuple[Floats, Floats]:
     """The near and the far ring of a placed view (m, 2), its beams cut where a mirror makes void what lies farther."""
-    crossed = _crossings(far, origin, walls.faces, walls.answers)
+    crossed = _crossings(far, origin, (walls.faces, walls.answers), walls.settings.least)
     crossed = crossed.where(_goes_on_to(crossed.points, crossed.face, walls.faces))
     crossed = crossed.where(~_open_at(crossed.points, crossed.face, walls))
     sure = np.ones(len(far))
@@ -77,15 +87,16 @@ def up_to_mirrors(near: Floats, far: Floats, origin: Floats, walls: Walls) -> tu
     return np.where(short[:, None], cut, near), cut
 
 
-def _answers(samples: Samples, origins: Floats, faces: WallFaces) -> Floats:
+def _answers(samples: Samples, origins: Floats, faces: WallFaces, settings: GrazingSettings) -> Floats:
     """The cosine (f,) of the angle off its normal within which most of each face was measured."""
     known = faces.label >= 0
     face, beam = faces.label[known], origins[samples.view[known]] - samples.points[known]
     cosine = np.sum(beam * faces.normals[face], axis=1) / np.linalg.norm(beam, axis=1)
     order = np.lexsort((-cosine, face))
     first = np.searchsorted(face[order], np.arange(len(faces.centres) + 1))
-    last = first[:-1] + np.floor(ANSWERED * np.maximum(np.diff(first) - 1, 0)).astype(np.int64)
-    return np.asarray(np.maximum(cosine[order][np.minimum(last, len(order) - 1)], np.cos(STEEPEST)))
+    last = first[:-1] + np.floor(settings.answered * np.maximum(np.diff(first) - 1, 0)).astype(np.int64)
+    most = np.cos(np.radians(settings.steepest))
+    return np.asarray(np.maximum(cosine[order][np.minimum(last, len(order) - 1)], most))
 
 
 def _along(points: Floats, face: Ints, faces: WallFaces) -> Floats:
@@ -100,9 +111,11 @@ def _places(points: Floats, face: Ints, faces: WallFaces) -> Ints:
     return np.where(face >= 0, face * (1 << 21) + pieces, -1)
 
 
-def _crossings(ring: Floats, origin: Floats, faces: WallFaces, answers: Floats) -> _Crossings:
-    """Where the beams from the origin (2,) to a ring (m, 2) pass lines of wall more aslant than these answer."""
-    chosen = np.flatnonzero((np.ptp(faces.spans, axis=1) >= LEAST) & (faces.support >= 2))
+def _crossings(ring: Floats, origin: Floats, walls: tuple[WallFaces, Floats], least: float) -> _Crossings:
+    """Where the beams from the origin (2,) to a ring (m, 2) pass lines of wall more aslant than these answer: faces and
+    cosines (f,); those `least` metres long count."""
+    faces, answers = walls
+    chosen = np.flatnonzero((np.ptp(faces.spans, axis=1) >= least) & (faces.support >= 2))
     normals, height = faces.normals[chosen], np.sum((origin - faces.centres[chosen]) * faces.normals[chosen], axis=1)
     beams = ring - origin
     descent = -beams @ normals.T
@@ -122,7 +135,7 @@ def _goes_on_to(points: Floats, face: Ints, faces: WallFaces) -> Flags:
 def _open_at(points: Floats, face: Ints, walls: Walls) -> Flags:
     """Whether some view looks squarely through the lines of faces (n,) at points (n, 2)."""
     normals, views = walls.faces.normals[face], len(walls.sight.origins)
-    before, behind = (walls.sight.pairs(points + side * BEHIND * normals) for side in (1, -1))
+    before, behind = (walls.sight.pairs(points + side * walls.settings.behind * normals) for side in (1, -1))
     point, view = np.divmod(np.intersect1d(before[0] * views + before[1], behind[0] * views + behind[1]), views)
     beam = walls.sight.origins[view] - points[point]
     square = np.sum(beam * normals[point], axis=1) > walls.answers[face[point]] * np.linalg.norm(beam, axis=1)

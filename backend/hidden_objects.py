@@ -4,7 +4,7 @@ A hole of the free space is an object. It is measured if its boundary is mostly 
 it is mostly line of sight; a notch nobody saw is inferred unless it is a mere shadow of something else.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from shapely import MultiPolygon, Polygon
 
 from backend.contours import as_polygons
-from backend.occluders import Rim, occluders, rims_of
+from backend.occluders import OccluderSettings, Rim, occluders, rims_of
 from backend.room_map import Door, MapEdge, MapEdgeKind, Obstacle
 from backend.sight import Sight
 
@@ -33,6 +33,7 @@ class ObjectSettings:
     least_pocket: float = 0.04  # m²; larger infers only bigger objects
     looked_at: float = 0.5  # share of a notch's rim; larger takes more notches for shadows of what stands before them
     least: float = 0.01  # m²; larger names only bigger objects: a lone repaired piece of face is none
+    occluders: OccluderSettings = field(default_factory=OccluderSettings)
 
 
 def without_slivers(free: MultiPolygon, surface: Floats, reach: float, settings: ObjectSettings) -> MultiPolygon:
@@ -60,10 +61,11 @@ def objects_in(
     tree = shapely.STRtree([shapely.LineString([edge.start, edge.end]) for edge in edges])
     found = [_judged(thing, tree, edges, settings) for thing in things if not _is_wall(thing, settings)]
     judged = [thing for thing in found if not thing.inferred or thing.outline.area >= settings.least_pocket]
-    rims = rims_of(free, edges, sight)
+    rims = rims_of(free, edges, sight, settings.occluders)
     pockets = [_judged(pocket, tree, edges, settings) for pocket in _pockets(free, settings)]
     hidden = [p for p in pockets if p.inferred and _looked_at(p.outline, rims) >= settings.looked_at]
-    closed = [_closed(body, tree, edges) for body in occluders(free, rims) if body.area >= settings.least_pocket]
+    bodies = occluders(free, rims, settings.occluders)
+    closed = [_closed(body, tree, edges) for body in bodies if body.area >= settings.least_pocket]
     known = shapely.union_all([thing.outline for thing in (*judged, *closed)])
     return tuple(judged + closed + [pocket for pocket in hidden if not pocket.outline.intersects(known)])
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from backend.ballots import ballot_of
 from backend.evidence import Ballot, EvidenceGrid
-from backend.grazing import up_to_mirrors, walls_of
+from backend.grazing import GrazingSettings, up_to_mirrors, walls_of
 from backend.half_steps import by_half_steps
 from backend.map_reading import PlacedViews, ReadingSettings, read_map
 from backend.room_map import RoomMap
@@ -45,6 +45,7 @@ class MergeSettings:
     wall_strip: float = 0.06  # larger holds walls better and believes vaguer surfaces, and closes thinner slits
     settling: SettleSettings = field(default_factory=SettleSettings)
     faces: FaceSettings = field(default_factory=FaceSettings)
+    grazing: GrazingSettings = field(default_factory=GrazingSettings)
     reading: ReadingSettings = field(default_factory=ReadingSettings)
 
 
@@ -171,7 +172,7 @@ class Merger:
         samples, faces = measured
         wide = any(placed.view.wide is not None for _, placed in everyone)
         rings = [place(placed.surfaces.ring, pose) for (_, placed), pose in zip(everyone, poses, strict=True)]
-        walls = walls_of(faces, samples, rings, origins) if wide else None
+        walls = walls_of(faces, samples, rings, origins, self.settings.grazing) if wide else None
         ends = np.searchsorted(samples.view, np.arange(len(everyone) + 1))
         again = np.arange(len(everyone)) if wide else self._moved(poses, samples, origins, faces)
         for row in again:

@@ -12,7 +12,6 @@ from backend.settling import SettleSettings, settle, settle_among
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-STALE = 0.03  # of the views may change before all settle anew; larger looks faster, at poses settled less well
 
 
 class SettledPoses:
@@ -32,7 +31,7 @@ class SettledPoses:
         """Poses (v, 3) of the views `index` (v,) put at `given` (v, 3); samples as for `settle`."""
         moving = np.array([self._moved(i, pose) for i, pose in zip(index.tolist(), given, strict=True)], dtype=np.bool_)
         self._changed.update(index[moving].tolist())
-        if len(self._changed) > STALE * len(index):
+        if len(self._changed) > self._settings.stale * len(index):
             self._changed, poses = set(), settle(local, given, self._settings)
         elif moving.any():
             stood = np.array([self._known[i][1] if i in self._known else np.zeros(3) for i in index.tolist()])

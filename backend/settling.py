@@ -4,7 +4,7 @@ Every pass fits cell lines to all views at once and then solves for all poses to
 on the order of the views. The prior holds what the walls leave open, as along a corridor.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from backend.cell_lines import CellGrid, cell_lines
 from backend.samples import Samples
 from backend.shared_lines import joined, normal_equations, solved
-from backend.wall_directions import alignment
+from backend.wall_directions import DirectionSettings, alignment, angle_errors
 
 Floats = NDArray[np.float64]
 GOLDEN = 0.618034
@@ -31,9 +31,8 @@ class SettleSettings:
     coarse_cell: float = 0.6  # metres; larger joins more views to a line in the first pass
     fine_cell: float = 0.3  # metres; smaller follows bent walls better in the last pass
     independent: float = 0.10  # metres of surface that count as one measurement; larger trusts the prior more
-    askew: float = (
-        0.012  # radians a metre of wall may stand off the building's directions; larger believes in them less
-    )
+    stale: float = 0.03  # of the views may change before all settle anew; larger looks faster, at poses settled less
+    directions: DirectionSettings = field(default_factory=DirectionSettings)
 
 
 def settle(local: Samples, poses: Floats, settings: SettleSettings) -> Floats:
@@ -82,10 +81,11 @@ def _step(
     lines = cell_lines(placed.points, placed.normals, placed.weight / scale**2, scale, grid)
     weight = lines.trust * placed.weight / (settings.independent * scale**2)
     blocks, gradient, shared = normal_equations(placed, weight, lines, settled)
-    pull, torque, aligned = alignment(placed, len(settled), settings.askew)
+    prior = 1 / np.array([settings.position_sigma, settings.position_sigma, settings.heading_sigma]) ** 2
+    turns = np.asarray(np.linalg.inv(blocks + prior * np.eye(3))[:, 2, 2], dtype=np.float64)
+    pull, torque, aligned = alignment(placed, angle_errors(local, settings.independent), turns, settings.directions)
     blocks[:, 2, 2] += pull
     gradient[:, 2] += torque
-    prior = 1 / np.array([settings.position_sigma, settings.position_sigma, settings.heading_sigma]) ** 2
     stiffness = np.where(moving[:, None], prior, RIGID)
     right = np.where(moving[:, None], -gradient - prior * (settled - given), 0.0)
     return solved(blocks + stiffness[:, :, None] * np.eye(3), joined(shared, aligned), right)

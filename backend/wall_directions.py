@@ -3,7 +3,12 @@
 A view that shares little surface with the others has only its pose's word for its heading, and a wall five metres off
 moves by a decimetre with one degree. Directions are sought in all views at once, and none where surfaces face
 everywhere alike; which way they point is eliminated like the lines that views share, so all views turn freely together.
+
+How well a wall's angle is known, by its length and its view's heading, says how sharply directions are told apart and
+how far off one a wall may stand to run in it: a wing that is one degree askew is no part of the rest.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,31 +19,67 @@ from backend.shared_lines import Shared
 
 Floats = NDArray[np.float64]
 SQUARE = 0.5 * np.pi
-BINS = 360  # of a quarter turn
-SPREAD = 3.0  # bins; the width of a direction
-OUTSTANDING = 8.0  # times an even spread of surface over all directions, from which on one is a direction
+BINS = 720  # of a quarter turn
+SPREADS = np.array([2.0, 4.0, 8.0, 16.0, 32.0])  # bins: classes of standard errors, from a quarter of a degree to four
 
 
-def wall_directions(normals: Floats, weight: Floats) -> Floats:
-    """Directions (d,) in 0…π/2 in which, or square to which, outstandingly much of the surface faces."""
-    place = (np.arctan2(normals[:, 1], normals[:, 0]) % SQUARE) / SQUARE * BINS
-    faced = np.bincount(place.astype(np.int64) % BINS, weight, BINS)
-    smooth = ndimage.gaussian_filter1d(faced, SPREAD, mode="wrap")
-    peak = (smooth >= np.roll(smooth, 1)) & (smooth > np.roll(smooth, -1)) & (smooth > OUTSTANDING * faced.mean())
+@dataclass(frozen=True)
+class DirectionSettings:
+    """Opinions about the directions in which a building's walls run."""
+
+    askew: float = (
+        0.012  # radians a metre of wall may stand off the building's directions; larger believes in them less
+    )
+    apart: float = 2.0  # standard errors off a direction from which a wall is not in it; larger bends wings less askew
+    outstanding: float = 8.0  # times an even spread of surface; larger finds directions in fewer buildings
+
+
+def angle_errors(local: Samples, independent: float) -> tuple[Floats, Floats]:
+    """Standard error (n,) of the angle of the straight piece of surface that each sample lies on, and the length (n,)
+    of that piece: radians and metres.
+
+    A line fitted to what measures a piece of length L with noise σ, once every `independent` metres, turns by
+    σ √(12 independent / L) / L.
+    """
+    facing, view = local.normals, local.view
+    ends = np.any(facing[1:] != facing[:-1], axis=1) | (view[1:] != view[:-1])
+    piece = np.concatenate([np.zeros(min(len(view), 1), dtype=np.int64), np.cumsum(ends)])
+    length = np.maximum(np.bincount(piece, local.weight), independent)[piece]
+    return local.sigma * np.sqrt(12 * independent / length) / length, length
+
+
+def wall_directions(normals: Floats, weight: Floats, errors: Floats, outstanding: float) -> Floats:
+    """Directions (d,) in 0…π/2 in which, or square to which, outstandingly much of the surface faces.
+
+    Each sample counts around its angle as widely as that may be wrong: errors (n,), radians.
+    """
+    place = ((np.arctan2(normals[:, 1], normals[:, 0]) % SQUARE) / SQUARE * BINS).astype(np.int64) % BINS
+    kind = np.searchsorted(SPREADS[:-1], errors / SQUARE * BINS)
+    faced = np.bincount(kind * BINS + place, weight, len(SPREADS) * BINS).reshape(-1, BINS)
+    spread = zip(faced, SPREADS, strict=True)
+    smooth = np.sum([ndimage.gaussian_filter1d(row, width, mode="wrap") for row, width in spread], axis=0)
+    peak = (smooth >= np.roll(smooth, 1)) & (smooth > np.roll(smooth, -1)) & (smooth > outstanding * smooth.mean())
     return np.asarray((np.flatnonzero(peak) + 0.5) * SQUARE / BINS)
 
 
-def alignment(placed: Samples, views: int, askew: float) -> tuple[Floats, Floats, Shared]:
+def alignment(
+    placed: Samples, pieces: tuple[Floats, Floats], turns: Floats, settings: DirectionSettings
+) -> tuple[Floats, Floats, Shared]:
     """Stiffness and torque (v,) on the headings of the views, and how directions couple them.
 
-    askew: radians a metre of surface may stand off its direction; samples farther off count less.
+    pieces: as of `angle_errors`; turns: (v,) variance of the views' headings, radians². Whatever stands farther off its
+    direction than both together explain runs in another one, and hardly counts.
     """
-    directions = wall_directions(placed.normals, placed.weight)
+    (own, length), views = pieces, len(turns)
+    errors = np.sqrt(own**2 + turns[placed.view])
+    directions = wall_directions(placed.normals, placed.weight, errors, settings.outstanding)
     angle = np.arctan2(placed.normals[:, 1], placed.normals[:, 0])
     off = np.stack([(angle - turn + 0.5 * SQUARE) % SQUARE - 0.5 * SQUARE for turn in directions] or [angle])
     nearest = np.argmin(np.abs(off), axis=0)
     residual = off[nearest, np.arange(len(angle))]
-    trust = placed.weight / (1 + (residual / askew) ** 2) / askew**2
+    trust = (
+        placed.weight / (settings.askew**2 + length * own**2) / (1 + (residual / (settings.apart * errors)) ** 2) ** 2
+    )
     code = nearest * views + placed.view
     pull, load = (_by_view(code, trust * times, (len(directions), views)) for times in (1.0, residual))
     total = np.maximum(pull.sum(axis=1), 1e-12)

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from backend.grazing import Walls, up_to_mirrors, walls_of
+from backend.grazing import GrazingSettings, Walls, up_to_mirrors, walls_of
 from backend.samples import Samples
 from backend.wall_faces import FaceSettings, fuse_faces
 
@@ -20,7 +20,9 @@ def walls_by(*views: View) -> Walls:
     ones, view = np.ones_like(x), np.repeat([0, 1], 41)
     samples = Samples(points, np.tile([0.0, 1.0], (82, 1)), view, 0.01 * ones, 0.05 * ones, ones > 0)
     faces, seen = fuse_faces(samples, FaceSettings()), (views * 2)[: max(2, len(views))]
-    return walls_of(faces, samples, [ring for ring, _ in seen], np.array([origin for _, origin in seen]))
+    return walls_of(
+        faces, samples, [ring for ring, _ in seen], np.array([origin for _, origin in seen]), GrazingSettings()
+    )
 
 
 def test_a_beam_that_grazes_the_line_of_a_wall_ends_there() -> None:

@@ -7,13 +7,15 @@ import pytest
 
 from backend.samples import Samples
 from backend.settling import SettleSettings, settle
-from backend.wall_directions import wall_directions
+from backend.wall_directions import DirectionSettings, angle_errors, wall_directions
 from tests.backend.placed_samples import joined, wall_samples
 
 
-def facing(degrees: list[float], weight: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
+def directions(degrees: list[float], known_to: float = 0.5) -> np.ndarray:
+    """Directions of so many equal pieces of surface that face these ways; all in degrees."""
     angle = np.radians(degrees)
-    return np.stack([np.cos(angle), np.sin(angle)], axis=1), np.full(len(degrees), weight)
+    normals, errors = np.stack([np.cos(angle), np.sin(angle)], axis=1), np.full(len(angle), np.radians(known_to))
+    return np.degrees(wall_directions(normals, np.ones(len(angle)), errors, DirectionSettings().outstanding))
 
 
 def walls(view: int, turn: float, shift: float) -> Samples:
@@ -27,15 +29,39 @@ def walls(view: int, turn: float, shift: float) -> Samples:
 
 
 def test_walls_at_right_angles_share_one_direction() -> None:
-    assert np.degrees(wall_directions(*facing([20.0, 110.0, 200.0, 290.0]))) == pytest.approx([20.0], abs=0.2)
+    assert directions([20.0, 110.0, 200.0, 290.0]) == pytest.approx([20.0], abs=0.2)
 
 
 def test_a_wing_that_stands_askew_has_a_direction_of_its_own() -> None:
-    assert np.degrees(wall_directions(*facing([3.0, 93.0, 38.0]))) == pytest.approx([3.0, 38.0], abs=0.2)
+    assert directions([3.0, 93.0, 38.0]) == pytest.approx([3.0, 38.0], abs=0.2)
 
 
 def test_round_walls_have_no_direction() -> None:
-    assert len(wall_directions(*facing(np.linspace(0, 360, 3000).tolist()))) == 0
+    assert len(directions(np.linspace(0, 360, 3000).tolist())) == 0
+
+
+def test_directions_are_told_apart_as_sharply_as_walls_are_known() -> None:
+    assert directions([10.0] * 3 + [11.2] * 2, known_to=0.2) == pytest.approx([10.0, 11.2], abs=0.2)
+    assert len(directions([10.0] * 3 + [11.2] * 2, known_to=1.0)) == 1
+
+
+def test_the_longer_a_wall_is_the_better_its_angle_is_known() -> None:
+    rng = np.random.default_rng(0)
+    parts = [wall_samples(np.zeros(2), np.array([length, 0.0]), 1, 0.0, rng) for length in (1.0, 4.0)]
+    parts[1] = Samples(
+        parts[1].points, parts[1].normals, parts[1].view + 1, parts[1].sigma, parts[1].weight, parts[1].sure
+    )
+    errors, length = angle_errors(joined(*parts), 0.1)
+    assert length[[0, -1]] == pytest.approx([1.0, 4.0])
+    assert errors[0] / errors[-1] == pytest.approx(8.0)
+
+
+@pytest.mark.parametrize("askew", [1.0, 2.0, 4.0])
+def test_a_wing_a_degree_askew_is_not_bent_to_the_rest_of_the_building(askew: float) -> None:
+    views = 8
+    placed = [walls(view, np.radians(askew) * (view >= views), 20.0 * (view >= views)) for view in range(2 * views)]
+    found = settle(joined(*placed), np.zeros((2 * views, 3)), SettleSettings())
+    assert np.degrees(found[views:, 2].mean() - found[:views, 2].mean()) == pytest.approx(0.0, abs=0.04)
 
 
 def test_views_that_share_no_wall_turn_along_with_each_other() -> None:
