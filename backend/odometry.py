@@ -8,6 +8,8 @@ the gate is a slip (or a wrong registration): it teaches nothing and is reported
 
 from collections import deque
 from dataclasses import dataclass
+from math import cos, hypot, sin
+from statistics import median
 
 import numpy as np
 from filterpy.kalman import KalmanFilter
@@ -83,7 +85,7 @@ class Odometry:
 
     def expect(self, wheels: Floats, seconds: float) -> tuple[Move, str | None]:
         """The move to expect in so many seconds, and why the wheels cannot be taken at their word, if so."""
-        usual = float(np.median(self._intervals)) if self._intervals else np.inf
+        usual = median(self._intervals) if self._intervals else np.inf
         self._intervals.append(seconds)
         way, settings = float(np.hypot(wheels[0], wheels[1])), self.settings
         if way > settings.fastest * max(seconds, 0.0) + settings.lost_metres:
@@ -144,34 +146,34 @@ class Odometry:
 
     def _moved(self, wheels: Floats) -> tuple[Floats, Floats]:
         """The corrected move (3,) of the registered point and its derivative (3, 5) with respect to the constants."""
-        scale, turn_scale, bias, *mount = self.calibration
-        way = float(np.hypot(wheels[0], wheels[1]))
-        turn = turn_scale * wheels[2] + bias * way
+        scale, turn_scale, bias, before, beside = self._filter.x[:, 0].tolist()
+        x, y, turned = wheels.tolist()
+        way = hypot(x, y)
+        turn = turn_scale * turned + bias * way
         # The turn that the wheels did not notice happens along the way: the chord swings by half of it.
-        chord = _rotation((turn - wheels[2]) / 2) @ wheels[:2]
-        aside = scale / 2 * np.array([-chord[1], chord[0]])
-        lever = _rotation(turn) - np.eye(2)
-        pose = np.array([*(scale * chord + lever @ mount), turn])
-        swept = np.array([[0.0, -1.0], [1.0, 0.0]]) @ _rotation(turn) @ mount
-        jacobian = np.zeros((3, 5))
-        jacobian[:2, 0] = chord
-        jacobian[:2, 1] = (aside + swept) * wheels[2]
-        jacobian[:2, 2] = (aside + swept) * way
-        jacobian[:2, 3:] = lever
-        jacobian[2, 1:3] = wheels[2], way
+        c, s = cos((turn - turned) / 2), sin((turn - turned) / 2)
+        chord_x, chord_y = c * x - s * y, s * x + c * y
+        c, s = cos(turn), sin(turn)
+        swung_x, swung_y = c * before - s * beside, s * before + c * beside
+        pose = np.array([scale * chord_x + swung_x - before, scale * chord_y + swung_y - beside, turn])
+        # What turning does to the place: half of it to the chord, all of it to the mount.
+        aside_x, aside_y = -scale / 2 * chord_y - swung_y, scale / 2 * chord_x + swung_x
+        jacobian = np.array(
+            [
+                [chord_x, aside_x * turned, aside_x * way, c - 1, -s],
+                [chord_y, aside_y * turned, aside_y * way, s, c - 1],
+                [0.0, turned, way, 0.0, 0.0],
+            ]
+        )
         return pose, jacobian
 
     def _noise(self, wheels: Floats) -> Floats:
-        settings, way = self.settings, float(np.hypot(wheels[0], wheels[1]))
+        settings, way = self.settings, hypot(wheels[0], wheels[1])
         distance = settings.distance_noise * way + settings.least_distance
-        turn = settings.turn_noise * abs(wheels[2]) + settings.turn_per_metre * way + settings.least_turn
-        return np.diag([distance, distance, turn]) ** 2
+        turn = settings.turn_noise * abs(float(wheels[2])) + settings.turn_per_metre * way + settings.least_turn
+        return np.diag([distance**2, distance**2, turn**2])
 
 
 def _size(move: Floats) -> tuple[float, float]:
     """Metres and radians of a move (3,)."""
     return float(np.hypot(*move[:2])), abs(float(move[2]))
-
-
-def _rotation(angle: float) -> Floats:
-    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
