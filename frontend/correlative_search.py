@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frontend.compiled import compiled
-from frontend.rigid_motion import rotation
 from frontend.scan import Floats, Integers
 
 Scores = NDArray[np.float32]
@@ -54,10 +53,7 @@ class ScoreGrid:
         step = self.cell / max(reach, 1.0)
         turns = guess[2] + step * np.arange(-np.ceil(window[1] / step), np.ceil(window[1] / step) + 1)
         span = int(np.ceil(window[0] / self.cell - 1e-6))
-        cells = np.empty((len(turns), len(points), 2), np.int64)
-        for k, turn in enumerate(turns):
-            placed = points @ rotation(turn).T + guess[:2]
-            cells[k] = np.floor((placed - self.corner) / self.cell)
+        cells = _turned_cells(points, turns, guess[:2] - self.corner, self.cell)
         score, k, u, v = _best(self.pyramid, cells, span, least * len(points))
         if k < 0:
             return None
@@ -66,16 +62,31 @@ class ScoreGrid:
 
 
 @compiled
+def _turned_cells(points: Floats, turns: Floats, offset: Floats, cell: float) -> Integers:
+    """Cells (t, k, 2) of the points (k, 2) at each of the turns (t,), seen from the grid's corner."""
+    cells = np.empty((len(turns), len(points), 2), np.int64)
+    for t in range(len(turns)):
+        cosine, sine = np.cos(turns[t]), np.sin(turns[t])
+        for k in range(len(points)):
+            cells[t, k, 0] = int(np.floor((cosine * points[k, 0] - sine * points[k, 1] + offset[0]) / cell))
+            cells[t, k, 1] = int(np.floor((sine * points[k, 0] + cosine * points[k, 1] + offset[1]) / cell))
+    return cells
+
+
+@compiled
 def _stamp(points: Floats, corner: Floats, cell: float, blur: float, score: Scores) -> None:
+    """Raise the score (w, h) around each point to that of a bell, the product of one along x and one along y."""
     reach = int(np.ceil(2.5 * blur / cell))
+    narrow, along_y = -0.5 * (cell / blur) ** 2, np.empty(2 * reach + 1, np.float32)
     for i in range(len(points)):
         x, y = (points[i, 0] - corner[0]) / cell, (points[i, 1] - corner[1]) / cell
-        u, v = int(x), int(y)
-        for a in range(max(0, u - reach), min(score.shape[0], u + reach + 1)):
-            for b in range(max(0, v - reach), min(score.shape[1], v + reach + 1)):
-                d = ((a + 0.5 - x) ** 2 + (b + 0.5 - y) ** 2) * cell * cell
-                value = np.float32(np.exp(-d / (2 * blur * blur)))
-                score[a, b] = max(score[a, b], value)
+        u, v = int(x) - reach, int(y) - reach
+        for b in range(2 * reach + 1):
+            along_y[b] = np.exp(narrow * (v + b + 0.5 - y) ** 2)
+        for a in range(max(0, u), min(score.shape[0], u + 2 * reach + 1)):
+            along_x = np.float32(np.exp(narrow * (a + 0.5 - x) ** 2))
+            for b in range(max(0, -v), min(score.shape[1] - v, 2 * reach + 1)):
+                score[a, v + b] = max(score[a, v + b], along_x * along_y[b])
 
 
 @compiled
@@ -88,15 +99,12 @@ def _maxima(score: Scores, levels: int) -> Pyramid:
     for h in range(1, levels):
         d = 1 << (h - 1)
         for a in range(width):
+            row, other = pyramid[h - 1, a], pyramid[h - 1, min(a + d, width - 1)]
             for b in range(height):
-                best = pyramid[h - 1, a, b]
-                if a + d < width:
-                    best = max(best, pyramid[h - 1, a + d, b])
-                    if b + d < height:
-                        best = max(best, pyramid[h - 1, a + d, b + d])
-                if b + d < height:
-                    best = max(best, pyramid[h - 1, a, b + d])
-                pyramid[h, a, b] = best
+                pyramid[h, a, b] = max(row[b], other[b]) if a + d < width else row[b]
+            # In rising order, so that what lies ahead has not been raised by what lies beyond it.
+            for b in range(height - d):
+                pyramid[h, a, b] = max(pyramid[h, a, b], pyramid[h, a, b + d])
     return pyramid
 
 
