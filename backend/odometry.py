@@ -13,9 +13,9 @@ from statistics import median
 
 import numpy as np
 from filterpy.kalman import KalmanFilter
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from backend.arcs import Floats
+from backend.steady_motion import SteadyMotion
 
 
 @dataclass(frozen=True)
@@ -59,9 +59,7 @@ class Odometry:
         self._filter.P = np.diag([*doubts, settings.mount_doubt, settings.mount_doubt]) ** 2
         self._intervals: deque[float] = deque(maxlen=100)
         self._slips = 0  # in a row
-        self._speed = np.zeros(3)  # of the last registered move, per second
-        self._missed = 0  # moves since that one
-        self._surprises: deque[Floats] = deque(maxlen=settings.remembered)  # (2, 3): moves, and their changes
+        self._steady = SteadyMotion((settings.lost_metres, settings.lost_radians), settings.remembered)
 
     @property
     def calibration(self) -> Floats:
@@ -90,31 +88,27 @@ class Odometry:
         way, settings = float(np.hypot(wheels[0], wheels[1])), self.settings
         if way > settings.fastest * max(seconds, 0.0) + settings.lost_metres:
             return Move(np.zeros(3), self._lost), f"the wheels claim {way:.1f} m in {seconds:.2f} s"
-        expected = self.predict(wheels)
+        expected = self.steady(seconds) if self.broken else self.predict(wheels)
         if seconds > max(settings.gap_seconds, settings.gap_intervals * usual):
             doubted = Move(expected.pose, expected.covariance + self._lost)
             return doubted, f"{seconds:.1f} s without a scan, usually {usual:.2f} s"
-        return (self.steady(seconds) if self.broken else expected), None
+        return expected, None
 
     def steady(self, seconds: float) -> Move:
-        """The move to expect without wheels: on as before, or none, whichever foretold the newest moves better.
-
-        The doubt is how far that was off, as a quadratic mean, or more: a robot that only turned may drive on.
-        """
-        settings = self.settings
-        sizes = np.array([[_size(move) for move in pair] for pair in self._surprises or [np.zeros((2, 3))]])
-        # A switch between driving and turning is a surprise for both: what usually holds decides.
-        of_moves, of_changes = np.median(sizes, axis=0) @ (1 / settings.lost_metres, 1 / settings.lost_radians)
-        steady = bool(of_changes <= of_moves)
-        metres, radians = map(float, np.sqrt(np.mean(sizes[:, int(steady)] ** 2, axis=0)))
-        metres, radians = max(metres, settings.lost_metres), max(radians, settings.lost_radians)
-        lost = 1 + self._missed
-        expected = self._speed * max(seconds, 0.0) if steady and not self._missed else np.zeros(3)
-        return Move(expected, np.diag([lost * metres, lost * metres, lost * radians]) ** 2)
+        """The move to expect without wheels."""
+        return Move(*self._steady.foretell(seconds))
 
     def lose(self) -> None:
         """The last move is not known: the next one begins nobody knows where."""
-        self._missed += 1
+        self._steady.lose()
+
+    def arrive(self) -> None:
+        """The last scan stands where moves are told from again."""
+        self._steady.arrive()
+
+    def slide(self) -> None:
+        """The last move is known but for how far it went, along a corridor: it teaches nothing."""
+        self._steady.slide()
 
     @property
     def _lost(self) -> Floats:
@@ -130,10 +124,7 @@ class Odometry:
         residual[2] = np.arctan2(np.sin(residual[2]), np.cos(residual[2]))
         noise = self._noise(wheels) + registered.covariance
         distance = float(residual @ np.linalg.solve(jacobian @ self._filter.P @ jacobian.T + noise, residual))
-        if not self._missed:
-            self._surprises.append(np.array([registered.pose, registered.pose - self._speed * seconds]))
-        self._missed = 0
-        self._speed = registered.pose / max(seconds, 1e-3)
+        self._steady.see(registered.pose, seconds)
         if distance > self.settings.slip_gate:
             self._slips += 1
         elif np.hypot(*wheels[:2]) > self.settings.least_distance or abs(wheels[2]) > self.settings.least_turn:
@@ -172,8 +163,3 @@ class Odometry:
         distance = settings.distance_noise * way + settings.least_distance
         turn = settings.turn_noise * abs(float(wheels[2])) + settings.turn_per_metre * way + settings.least_turn
         return np.diag([distance**2, distance**2, turn**2])
-
-
-def _size(move: Floats) -> tuple[float, float]:
-    """Metres and radians of a move (3,)."""
-    return float(np.hypot(*move[:2])), abs(float(move[2]))

@@ -1,6 +1,6 @@
 """The application: composes the stages, reads, simulates, scores, draws and is the command line.
 
-pipeline, perception: scans become poses and a map. mapper is made of tracking, keyframes, pose_graph, wheels,
+pipeline, perception: scans become poses and a map. mapper is made of tracking, unguided, keyframes, pose_graph, wheels,
 loop_search with loops, constellation_search and doubted_loops, session_search with sessions and relocalisation,
 sonar_mapping with arc_tracking, logbook, and estimating with refining and main_map. door_tracking, wide_beam: what
 the merge is told beside the views.

@@ -46,6 +46,7 @@ class Mapper:
         self._cause: str | None = "the first scan"  # why the next scan begins a session
         self._astray: list[int] = []  # the newest scans, if they fit nowhere
         self._unmapped: set[int] = set()
+        self._held = 0  # the earliest keyframe whose distance from the newest is known
 
     @property
     def poses(self) -> Floats:
@@ -117,8 +118,13 @@ class Mapper:
         seconds, odometry = percept.scan.time - before.scan.time, self._wheels.newest
         move, gap = odometry.expect(wheels, seconds)
         settings = self.settings.tracking
+        # Nobody knows how long a corridor was in which the robot slid: what lies before it is no map of what follows.
         recent = [keyframe.faces for keyframe in self._graph.last(settings.recent)]
-        placed = self.logbook.answer(lambda: track(percept, last, move, recent, settings))
+        held = recent[-max(len(self._graph.keyframes) - self._held, 1) :]
+        placed = self.logbook.answer(lambda: track(percept, last, move, held, settings))
+        if len(held) < len(recent) and placed.fit < settings.unguided.sure:
+            whole = self.logbook.answer(lambda: track(percept, last, move, recent, settings))
+            placed = max(placed, whole, key=lambda one: (one.refused is None, one.fit))
         if odometry.broken:
             self._wheels.slip(index)
         elif placed.refused is not None:
@@ -133,6 +139,10 @@ class Mapper:
         if placed.refused is not None:
             self._graph.refuse("registration", (index,), placed.refused)
             odometry.lose()
+        elif placed.slid is not None:
+            self._graph.refuse("registration", (index - 1, index), placed.slid)
+            odometry.slide()
+            self._wheels.slip(index)
         elif gap is None:
             slipped = self._wheels.learn(wheels, between(last, placed.pose), placed, seconds)
             if slipped is not None:
@@ -181,6 +191,8 @@ class Mapper:
         self._wheels.slipped = False
         graph.add_keyframe(Keyframe(index, old.session, percept, placed.pose))
         graph.drift.add(new - 1, new, placed.covariance)
+        if placed.slid is not None:
+            self._held = new
         graph.see_landmarks()
 
     def _tick(self, stage: str, since: float) -> float:

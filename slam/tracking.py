@@ -7,11 +7,12 @@ import numpy as np
 from backend.odometry import Move
 from frontend.correlative_search import ScoreGrid, SearchSettings
 from frontend.local_map import Faces, LocalMap
-from frontend.registration import Alignment, Guess, RegistrationSettings, register
+from frontend.registration import Guess, RegistrationSettings
 from frontend.rigid_motion import compose, rotation
 from frontend.scan import Floats
-from frontend.visibility import Visibility, VisibilitySettings, look
+from frontend.visibility import VisibilitySettings
 from slam.perception import Percept
+from slam.unguided import Laid, Looked, Unguided, UnguidedSettings, place_unguided
 
 UNSEEN = 0.01  # information on a direction that registration does not see: 10 m, 10 rad
 
@@ -30,7 +31,7 @@ class TrackingSettings:
     firm: float = 0.05  # firmness under which a wider search is tried where less than `good` matches; larger does more
     poor: float = 0.4  # matched share under which, after that search, a scan is left to odometry; larger refuses more
     guided: float = 0.3  # metres of doubt beyond which a guess is none, and only registration knows the place
-    alone: float = 0.5  # the same as `poor` there; where it knows nothing either, the scan is astray
+    unguided: UnguidedSettings = field(default_factory=UnguidedSettings)
     window_metres: float = 0.4  # of the wider search; larger finds worse guesses and mistakes more
     window_radians: float = 0.25
     window_sigmas: float = 3.0  # of the guess's doubt that it covers, if that is wider; larger searches longer
@@ -50,7 +51,8 @@ class Placed:
 
     registered: (3, 3) covariance of registration alone, without the wheels', which are a measurement of their own.
     matched: what share of the surface found a face, 0 where nothing was registered. astray: why the scan cannot have
-    been taken near here at all, if so.
+    been taken near here at all, if so. slid: why nothing but the guess says where along a corridor it lies, if so.
+    fit: how well it lies there, at most 2.
     """
 
     pose: Floats
@@ -59,6 +61,8 @@ class Placed:
     refused: str | None = None
     astray: str | None = None
     registered: Floats | None = None
+    slid: str | None = None
+    fit: float = 0.0
 
     @property
     def measured(self) -> Floats:
@@ -88,36 +92,35 @@ def track(percept: Percept, last: Floats, move: Move, recent: list[Faces], setti
             f"{len(percept.surface.points)} surface points against {len(faces.points)} on the map: too few to register"
         )
         return Placed(guess, by_wheels, 0.0, few)
-    local_map = LocalMap.of(faces)
+    looked = Looked(percept, LocalMap.of(faces), settings.registration, settings.visibility)
     prior = Guess(guess, np.asarray(np.linalg.inv(doubt), np.float64))
     window = _window(doubt, settings)
-    wide = window[0] > settings.window_metres or window[1] > settings.window_radians
     lost = window[0] > settings.window_sigmas * settings.guided
-    found = register(percept.surface, local_map, prior, settings.registration)
-    seen = look(percept.fused, found.pose_in_fixed, faces, settings.visibility)
-    if wide or _doubtful(found, seen, settings):
-        found, seen = _wider(percept, local_map, prior, (found, seen), window, settings)
-    astray = _astray(percept, found.matched, seen, settings)
-    needed = settings.alone if lost else settings.poor
-    if found.matched < needed:
-        reason = (
-            f"only {found.matched:.0%} of {len(percept.surface.points)} surface points lie on the map "
-            f"({needed:.0%} needed)"
-        )
-        return Placed(guess, by_wheels, found.matched, reason, astray or (reason if lost else None))
-    if astray is not None:
-        return Placed(guess, by_wheels, found.matched, astray, astray)
-    if lost and found.firmness < settings.firm:
-        found = found.freed(window[0])
+    best = (
+        place_unguided(looked, prior, window, settings.unguided)
+        if lost
+        else Unguided(_near(looked, prior, window, settings))
+    )
+    found = best.laid.found
+    astray = _astray(percept, best.laid, settings)
+    refused = astray or best.refused
+    if found.matched < settings.poor and not lost:
+        of = f"{found.matched:.0%} of {len(percept.surface.points)} surface points"
+        refused = f"only {of} lie on the map ({settings.poor:.0%} needed)"
+    if refused is not None:
+        return Placed(guess, by_wheels, found.matched, refused, astray or (refused if lost else None))
     both, alone = (
         turned(np.asarray(np.linalg.inv(found.information + other), np.float64), -found.pose_in_fixed[2])
         for other in (prior.information, UNSEEN * np.eye(3))
     )
-    return Placed(found.pose_in_fixed, both, found.matched, registered=alone)
+    # Where nothing else says how far along a corridor the robot went, the graph has to go by what is usual.
+    measured = alone if best.slid is None else both
+    return Placed(found.pose_in_fixed, both, found.matched, registered=measured, slid=best.slid, fit=best.laid.fit)
 
 
-def _astray(percept: Percept, matched: float, seen: Visibility, settings: TrackingSettings) -> str | None:
+def _astray(percept: Percept, laid: Laid, settings: TrackingSettings) -> str | None:
     """What of the map it should have seen, and did not: a scan of another place, not one of new ground."""
+    seen, matched = laid.seen, laid.found.matched
     if percept.scan.sensor.half_beam > settings.narrow or seen.visible < settings.judges:
         return None
     if seen.confirmed < settings.astray:
@@ -129,11 +132,12 @@ def _astray(percept: Percept, matched: float, seen: Visibility, settings: Tracki
     return None
 
 
-def _doubtful(found: Alignment, seen: Visibility, settings: TrackingSettings) -> bool:
+def _doubtful(laid: Laid, settings: TrackingSettings) -> bool:
     """Whether the scan may lie better elsewhere. New ground matches nothing, which alone is no fault."""
     # What does not match may be the very wall that would hold a scan that is free to slide.
+    found = laid.found
     slides = found.matched < settings.good and found.firmness < settings.firm
-    return slides or seen.confirmed < settings.good or found.matched < settings.poor
+    return slides or laid.seen.confirmed < settings.good or found.matched < settings.poor
 
 
 def _window(doubt: Floats, settings: TrackingSettings) -> tuple[float, float]:
@@ -142,23 +146,18 @@ def _window(doubt: Floats, settings: TrackingSettings) -> tuple[float, float]:
     return max(float(place), settings.window_metres), min(max(float(turn), settings.window_radians), np.pi)
 
 
-def _wider(
-    percept: Percept,
-    local_map: LocalMap,
-    prior: Guess,
-    so_far: tuple[Alignment, Visibility],
-    window: tuple[float, float],
-    settings: TrackingSettings,
-) -> tuple[Alignment, Visibility]:
-    """Search a window around the guess, and keep the better of both answers."""
-    search = settings.search if window[0] <= settings.window_metres else settings.wide_search
-    best = ScoreGrid.of(local_map.faces.points, search).search(
-        percept.surface.points, prior.pose, window, settings.poor
+def _near(looked: Looked, prior: Guess, window: tuple[float, float], settings: TrackingSettings) -> Laid:
+    """The scan laid where the guess puts it, or elsewhere in the window where it lies clearly better."""
+    laid = looked.lay(prior)
+    wide = window[0] > settings.window_metres or window[1] > settings.window_radians
+    if not wide and not _doubtful(laid, settings):
+        return laid
+    search = settings.wide_search if wide else settings.search
+    best = ScoreGrid.of(looked.local_map.faces.points, search).search(
+        looked.percept.surface.points, prior.pose, window, settings.poor
     )
     if best is None:
-        return so_far
-    weak = Guess(prior.pose, prior.information * 0.05)
-    found = register(percept.surface, local_map, weak, settings.registration, start=best.pose)
-    seen = look(percept.fused, found.pose_in_fixed, local_map.faces, settings.visibility)
-    better = found.matched + seen.confirmed > so_far[0].matched + so_far[1].confirmed + 0.05
-    return (found, seen) if better else so_far
+        return laid
+    there = looked.lay(Guess(prior.pose, prior.information * 0.05), best.pose)
+    better = there.found.matched + there.seen.confirmed > laid.found.matched + laid.seen.confirmed + 0.05
+    return there if better else laid

@@ -44,6 +44,7 @@ class Wheels:
         """A session begins; unless the robot was changed, its wheels are those of the session before."""
         if len(self._odometries) <= session:
             self._odometries += self._odometries[-1:] or [Odometry(self.settings)]
+        self.newest.arrive()
         self.slipped = False
 
     def slip(self, scan: int) -> None:
