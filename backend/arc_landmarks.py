@@ -13,6 +13,7 @@ from backend.arc_births import Birth, BirthSettings, Loose, births
 from backend.arcs import Arcs, seen_wall
 from backend.factor_graph import FactorGraph
 from backend.odometry import Move
+from backend.square_walls import SquareSettings, SquareWalls
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -24,6 +25,7 @@ class ArcLandmarkSettings:
 
     association: AssociationSettings = field(default_factory=AssociationSettings)
     births: BirthSettings = field(default_factory=BirthSettings)
+    square: SquareSettings = field(default_factory=SquareSettings)
     reach: float = 5.5  # metres around the robot in which landmarks are looked for; larger looks farther
     fresh: int = 15  # scans since a landmark was seen after which to see it again is a loop; larger doubts fewer
     revisits: int = 2  # such landmarks a scan must recognise at once; larger refuses more loops
@@ -51,6 +53,7 @@ class ArcLandmarks:
         self._landmarks: list[_Landmark] = []
         self._counts: dict[bool, list[int]] = {True: [], False: []}
         self._waiting: list[tuple[int, Arcs, int]] = []  # pose, and which of its arcs
+        self._square = SquareWalls(settings.square)
 
     @property
     def counts(self) -> Integers:
@@ -61,6 +64,7 @@ class ArcLandmarks:
         """What follows was taken elsewhere: nothing of it may be recognised by what was seen so far."""
         self._landmarks.clear()
         self._waiting.clear()
+        self._square.forget()
 
     def place(self, graph: FactorGraph, last: int, move: Move, arcs: Arcs) -> tuple[Placement, list[int]]:
         """Where a scan lies after `move` from the pose `last`, and which landmarks its pairs mean."""
@@ -90,6 +94,10 @@ class ArcLandmarks:
             else:
                 self._waiting.append((pose, arcs, arc))
         self._waiting = [one for one in self._waiting if pose - one[0] <= self.settings.waiting]
+
+    def square(self, graph: FactorGraph) -> None:
+        """Hold walls that were seen often enough, and solved, to stand square to others."""
+        self._square.see(graph, np.array(self._counts[True], np.int64))
 
     def conceive(self, graph: FactorGraph, pose: int, turn: float) -> None:
         """Bear what the waiting arcs agree on. turn: radians by which the newest heading is in doubt."""

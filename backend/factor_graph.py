@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import gtsam
 import numpy as np
-from gtsam.symbol_shorthand import L, W, X
+from gtsam.symbol_shorthand import L, W, X, Y
 from numpy.typing import NDArray
 
 from backend.estimate import LandmarkTie, Tie
@@ -27,6 +27,8 @@ class GraphSettings:
 
     loop_width: float = 1.0  # Cauchy width of a loop's residual in sigmas; larger trusts doubtful loops more
     landmark_width: float = 1.345  # Huber width of a sighting's residual in sigmas; larger trusts outliers more
+    square: float = np.radians(1.0)  # by which walls are built askew; larger trusts the building less
+    square_width: float = 2.0  # Cauchy width of that, in sigmas; larger bends walls more that are not square
     iterations: int = 60  # of the final solve at most; more refines further
     settled: float = 1e-4  # relative fall of the error that ends it; larger stops earlier
 
@@ -48,13 +50,14 @@ class FactorGraph:
         self._walls: list[int] = []
         self._stays: dict[int, int] = {}  # wall, and the place of the factor that keeps it from sliding
         self._first_seen: dict[int, int] = {}  # wall, and the pose that saw it first
+        self._directions: dict[int, int] = {}  # direction, and the first wall that stands square to it
         self.ties: list[Tie] = []
         self._sightings: list[tuple[int, int, Floats, Floats]] = []
 
     @property
     def poses(self) -> Floats:
         """(n, 3) current estimates, in the order they were added."""
-        walls_first = gtsam.utilities.extractPose2(self._values).reshape(-1, 3)
+        walls_first = gtsam.utilities.extractPose2(self._values).reshape(-1, 3)  # then poses, directions last
         return np.asarray(walls_first[len(self._walls) :][_ranks(self._poses)])
 
     @property
@@ -62,6 +65,11 @@ class FactorGraph:
         """(w, 3) current frames of the walls, in the order they were added."""
         walls_first = gtsam.utilities.extractPose2(self._values).reshape(-1, 3)
         return np.asarray(walls_first[: len(self._walls)][_ranks(self._walls)])
+
+    @property
+    def directions(self) -> Floats:
+        """(d,) headings of the directions of walls, in the order they were added."""
+        return np.array([self._values.atPose2(Y(k)).theta() for k in range(len(self._directions))])
 
     @property
     def landmarks(self) -> Floats:
@@ -139,6 +147,22 @@ class FactorGraph:
         self._graph.add(gtsam.BetweenFactorPose2(X(pose), W(wall), gtsam.Pose2(*frame), noise))
         self._first_seen.setdefault(wall, pose)
 
+    def add_direction(self, index: int, heading: float) -> None:
+        """A new direction of walls at its first guess: the next index. Its place means nothing, and stays."""
+        there = gtsam.Pose2(0.0, 0.0, heading)
+        self._insert(Y(index), there)
+        self._directions[index] = -1
+        self._graph.add(gtsam.PriorFactorPose2(Y(index), there, _noise(np.diag([1.0, 1.0, 1e6]))))
+
+    def add_square(self, wall: int, direction: int, turns: int) -> None:
+        """The wall heads `turns` quarter turns from a direction, unless the rest of the graph contradicts it."""
+        if self._directions[direction] < 0:
+            self._directions[direction] = wall
+        cauchy = gtsam.noiseModel.mEstimator.Cauchy.Create(self.settings.square_width)
+        noise = gtsam.noiseModel.Robust.Create(cauchy, _noise(np.diag([1e6, 1e6, self.settings.square]) ** 2))
+        turned = gtsam.Pose2(0.0, 0.0, turns * np.pi / 2)
+        self._graph.add(gtsam.BetweenFactorPose2(Y(direction), W(wall), turned, noise))
+
     def belief(self, pose: int, walls: list[int], landmarks: list[int]) -> tuple[Floats, Floats]:
         """Mean (d,), joint covariance (d, d) of a pose, walls (3 each), landmarks (2 each), all in the room's axes."""
         frames = [self._values.atPose2(key) for key in (X(pose), *map(W, walls))]
@@ -194,11 +218,7 @@ class FactorGraph:
             if pose in moved:
                 seen = self._values.atPose2(X(pose)).transformTo(self._values.atPoint2(L(landmark)))
                 self._values.update(L(landmark), moved[pose].transformFrom(seen))
-        for wall, pose in self._first_seen.items():
-            if pose in moved:
-                frame = moved[pose].compose(self._values.atPose2(X(pose)).between(self._values.atPose2(W(wall))))
-                self._values.update(W(wall), frame)
-                self._graph.replace(self._stays[wall], _stay(wall, frame))
+        self._carry_walls(moved)
         for index, there in moved.items():
             self._values.update(X(index), there)
         gone, kept = self._anchors.pop(freed), gtsam.NonlinearFactorGraph()
@@ -208,6 +228,20 @@ class FactorGraph:
         self._graph = kept
         for places in (self._anchors, self._stays):
             places.update({index: place - (place > gone) for index, place in places.items()})
+
+    def _carry_walls(self, moved: dict[int, gtsam.Pose2]) -> None:
+        """Walls go along with the pose that saw them first, directions with the wall that was held to them first."""
+        turned = {}
+        for wall, pose in self._first_seen.items():
+            if pose in moved:
+                before = self._values.atPose2(W(wall))
+                frame = moved[pose].compose(self._values.atPose2(X(pose)).between(before))
+                self._values.update(W(wall), frame)
+                self._graph.replace(self._stays[wall], _stay(wall, frame))
+                turned[wall] = gtsam.Pose2(0.0, 0.0, frame.theta() - before.theta())
+        for direction, wall in self._directions.items():
+            if wall in turned:
+                self._values.update(Y(direction), self._values.atPose2(Y(direction)).compose(turned[wall]))
 
     def solved(self) -> "FactorGraph":
         """The same factors with everything at its best; this graph keeps the estimates it has."""

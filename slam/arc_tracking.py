@@ -70,6 +70,7 @@ class ArcTracking:
         turn = float(np.sqrt(min(move.covariance[2, 2], placement.covariance[2, 2])))
         self._landmarks.conceive(graph, number, turn)
         graph.solve(self.settings.settled)
+        self._landmarks.square(graph)
         covariance = turned(placement.covariance, -placement.pose[2])
         return graph.poses[number], covariance, len(placement.pairs)
 
