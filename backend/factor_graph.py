@@ -51,7 +51,7 @@ class FactorGraph:
         self._stays: dict[int, int] = {}  # wall, and the place of the factor that keeps it from sliding
         self._first_seen: dict[int, int] = {}  # wall, and the pose that saw it first
         self._directions: dict[int, int] = {}  # direction, and the first wall that stands square to it
-        self.ties: list[Tie] = []
+        self._ties: list[tuple[int, int, Floats, Floats]] = []
         self._sightings: list[tuple[int, int, Floats, Floats]] = []
 
     @property
@@ -78,10 +78,20 @@ class FactorGraph:
         return np.asarray(sorted_by_index[_ranks(self.landmark_indices)])
 
     @property
+    def ties(self) -> list[Tie]:
+        """Every motion and loop."""
+        information = _information(np.array([tie[3] for tie in self._ties]).reshape(-1, 3, 3))
+        return [Tie(*tie[:3], known) for tie, known in zip(self._ties, information, strict=True)]
+
+    @property
     def landmark_ties(self) -> list[LandmarkTie]:
         """Every sighting, its landmark by its place in `landmarks`."""
         place = {index: k for k, index in enumerate(self.landmark_indices)}
-        return [LandmarkTie(pose, place[index], *seen) for pose, index, *seen in self._sightings]
+        information = _information(np.array([seen[3] for seen in self._sightings]).reshape(-1, 2, 2))
+        return [
+            LandmarkTie(pose, place[index], position, known)
+            for (pose, index, position, _), known in zip(self._sightings, information, strict=True)
+        ]
 
     def add_pose(self, index: int, pose: Floats) -> None:
         """A new pose at its first guess (3,)."""
@@ -97,7 +107,7 @@ class FactorGraph:
     def add_motion(self, fixed: int, moving: int, pose: Floats, covariance: Floats) -> None:
         """`moving` was seen or driven to be at `pose` (3,) in the frame of `fixed`."""
         self._add_between(fixed, moving, pose, _noise(covariance))
-        self.ties.append(Tie(fixed, moving, pose, _information(covariance)))
+        self._ties.append((fixed, moving, pose, covariance))
 
     def add_loop(self, fixed: int, moving: int, pose: Floats, covariance: Floats) -> None:
         """As `add_motion`, but it may be wrong: it loses its weight when the rest of the graph contradicts it."""
@@ -107,7 +117,7 @@ class FactorGraph:
         information = _information(covariance)
         self._loops.append((fixed, moving, gtsam.Pose2(*pose), information))
         self._add_between(fixed, moving, pose, gtsam.noiseModel.Robust.Create(cauchy, _noise(covariance)))
-        self.ties.append(Tie(fixed, moving, pose, information))
+        self._ties.append((fixed, moving, pose, covariance))
 
     def add_landmark(self, index: int, position: Floats) -> None:
         """A new landmark at its first guess (2,)."""
@@ -130,7 +140,7 @@ class FactorGraph:
         noise = gtsam.noiseModel.Robust.Create(huber, _noise(turned @ covariance @ turned.T))
         bearing = gtsam.Rot2(float(np.arctan2(position[1], position[0])))
         self._graph.add(gtsam.BearingRangeFactor2D(X(pose), L(landmark), bearing, distance, noise))
-        self._sightings.append((pose, landmark, position, _information(covariance)))
+        self._sightings.append((pose, landmark, position, covariance))
 
     def add_wall(self, index: int, frame: Floats) -> None:
         """A new wall at its first guess: a frame (3,) that lies on it, heads into it, and may slide along it."""
@@ -288,7 +298,7 @@ class FactorGraph:
 
 def _tree_parameters() -> gtsam.ISAM2Params:
     parameters = gtsam.ISAM2Params()
-    parameters.setRelinearizeThreshold(0.02)
+    parameters.setRelinearizeThreshold(0.05)  # metres or radians; the solve at the end is exact
     parameters.relinearizeSkip = 1
     return parameters
 
