@@ -13,6 +13,7 @@ from planners.visibility import eroded
 from planners.world import World
 
 Floats = NDArray[np.float64]
+Geometries = NDArray[np.object_]
 
 HALVINGS = 30  # of the interval that holds the radius of the largest disc
 PLAY = 1e-4  # of that radius: a disc so much smaller passes, one so much larger does not; larger blurs the place
@@ -49,9 +50,10 @@ def _neck(world: World, around: shapely.Polygon, radius: float, ends: tuple[shap
 
     What that disc still reaches falls into rooms; a neck between them, not the wall where they lie closest, is the gap.
     """
-    rooms = shapely.union_all(eroded(world.free, radius * (1 + PLAY))).buffer(8 * PLAY * radius)
-    necks = shapely.get_parts(around.difference(rooms))
-    pieces = np.concatenate([necks, shapely.get_parts(around.intersection(rooms))])
+    rooms = np.array(eroded(world.free, radius * (1 + PLAY)))
+    reached = shapely.union_all(rooms).buffer(8 * PLAY * radius)
+    necks = shapely.get_parts(around.difference(reached))
+    pieces = np.concatenate([necks, shapely.get_parts(around.intersection(reached))])
     pairs = shapely.STRtree(pieces).query(pieces, predicate="dwithin", distance=0.01 * PLAY * radius)
     first, last = (int(np.argmin(shapely.distance(pieces, each))) for each in ends)
     touching = coo_array((np.ones(pairs.shape[1]), tuple(pairs)), shape=(len(pieces), len(pieces)))
@@ -59,7 +61,18 @@ def _neck(world: World, around: shapely.Polygon, radius: float, ends: tuple[shap
     while before[way[-1]] >= 0:
         way.append(int(before[way[-1]]))
     passed = [piece for piece in way[1:-1] if piece < len(necks)] or [piece for piece in way if piece < len(necks)]
+    if not passed or pieces[passed[0]].is_empty:
+        return _between_rooms(rooms, ends)
     return np.asarray(shapely.get_coordinates(pieces[passed[0]].representative_point())[0])
+
+
+def _between_rooms(rooms: Geometries, ends: tuple[shapely.Point, shapely.Point]) -> Floats:
+    """The neck (2,) from the first end's room to the next, where it is too short to be seen; or an end in no room."""
+    first, last = (int(np.argmin(shapely.distance(rooms, each))) for each in ends)
+    if first == last:
+        return np.asarray(shapely.get_coordinates(max(ends, key=rooms[first].distance))[0])
+    line = shapely.shortest_line(rooms[first], shapely.union_all(np.delete(rooms, first)))
+    return np.asarray(shapely.get_coordinates(line).mean(axis=0))
 
 
 def _part_of(world: World, radius: float, first: shapely.Point, second: shapely.Point) -> shapely.Polygon | None:

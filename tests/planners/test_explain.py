@@ -1,13 +1,17 @@
 """Why there is no path: the narrowest place on the widest way, whose width and walls are known by construction."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
-from shapely import box
+from shapely import Point, box
 
 from planners.explain import gap_of, gap_sentence, largest_scale, narrowest, walls_beside
 from planners.path import Kind
+from planners.robot import Robot
 from planners.world import World
 from tests.planners.known_worlds import door
+from tests.planners.random_worlds import random_pose, random_world
 
 LEFT, RIGHT = np.array([15.0, 30.0]), np.array([85.0, 30.0])
 
@@ -51,6 +55,18 @@ def test_the_gap_is_the_way_round_and_not_the_thin_wall_that_is_gone_round(shelf
         assert sorted(gap.edges[:, :, 1].mean(axis=1)) == pytest.approx([shelf + 0.1, 20], abs=1e-5)
     else:
         assert not 19 < gap.place[0] < 21, "the ends of the shelf are as narrow, the thin wall is no gap"
+
+
+@pytest.mark.parametrize("seed", [3004, *range(6)])
+def test_the_narrowest_place_of_any_world_is_as_wide_as_is_said(seed: int) -> None:
+    """In the first world a pose has a ten-thousandth more room than the gap beside it."""
+    rng = np.random.default_rng(seed)
+    world = random_world(rng)
+    poses = [random_pose(rng, world, Robot.disc(0.3)) for _ in range(8)]
+    for one, two in pairwise(pose[:2] for pose in poses if pose is not None):
+        width, place = narrowest(world, one, two)
+        if width > 0:
+            assert 2 * world.boundary.distance(Point(place)) == pytest.approx(width, rel=0.03, abs=1e-6)
 
 
 def test_walls_that_part_altogether_are_told_so() -> None:
