@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+import shapely
 from shapely import Point, box
 
 from planners.explain import gap_of, gap_sentence, largest_scale, narrowest, walls_beside
@@ -66,7 +67,7 @@ def test_the_narrowest_place_of_any_world_is_as_wide_as_is_said(seed: int) -> No
     for one, two in pairwise(pose[:2] for pose in poses if pose is not None):
         width, place = narrowest(world, one, two)
         if width > 0:
-            assert 2 * world.boundary.distance(Point(place)) == pytest.approx(width, rel=0.03, abs=1e-6)
+            assert 2 * shapely.distance(world.boundary, Point(place)) == pytest.approx(width, rel=0.03, abs=1e-6)
 
 
 def test_walls_that_part_altogether_are_told_so() -> None:
