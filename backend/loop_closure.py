@@ -63,6 +63,21 @@ class Drift:
             self._variances = np.concatenate([self._variances, np.empty_like(self._variances)])
         self._ends[row], self._variances[row] = (fixed, moving), variances
 
+    def of_submap(self, middle: int, beside: int) -> Floats:
+        """(3, 3) covariance of a submap against its middle pose: of so many poses to either side, taken together.
+
+        The poses of a side walk at random away from the middle one: the sum of n of them errs by 1² + 2² + … + n²
+        steps' variances.
+        """
+        ends = (range(middle - beside, middle), range(middle, middle + beside))
+        sides = [[row for k in side if (row := self._rows.get((k, k + 1))) is not None] for side in ends]
+        counts = np.array([len(side) for side in sides])
+        if not counts.any():
+            return np.zeros((3, 3))
+        summed = np.sum(counts * (counts + 1) * (2 * counts + 1) / 6)
+        place, heading = summed / (1 + counts.sum()) ** 2 * self._variances[sides[0] + sides[1]].mean(axis=0)
+        return np.diag([place / 2, place / 2, heading])
+
     def place_from(self, newest: int, positions: Floats) -> Floats:
         """Standard deviations (n,) in metres of the place of every pose against the newest."""
         ends, variances = self._ends[: len(self._rows)], self._variances[: len(self._rows)]

@@ -8,8 +8,6 @@ import numpy as np
 
 from backend.loop_closure import LoopSettings
 from frontend.registration import Alignment
-from frontend.rigid_motion import between
-from slam.loops import loop_covariance
 from slam.pose_graph import PoseGraph
 from slam.sessions import Recognition, agreeing
 
@@ -30,8 +28,7 @@ class DoubtedLoops:
         """
         graph, moving = self.graph, len(self.graph.keyframes) - 1
         scans = (graph.keyframes[fixed].scan, graph.keyframes[moving].scan)
-        pose = between(graph.keyframes[fixed].pose, found.pose_in_fixed)
-        newest = Recognition(fixed, moving, pose, loop_covariance(found))
+        newest = graph.recognised(fixed, found)
         far = [one for one in self._waiting if self._way_from(one.moving) >= self.apart]
         earlier = next(
             (one for one in far if agreeing(newest, [one], graph.keyframes, self._drifted(one, newest))), None

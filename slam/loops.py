@@ -114,8 +114,7 @@ def _refusal(
     return None
 
 
-def loop_covariance(found: Alignment) -> Floats:
-    """(3, 3) of a pose on an old submap, in its own axes."""
+def loop_covariance(found: Alignment, submap: Floats) -> Floats:
+    """(3, 3) of a pose on an old submap, in its own axes. submap: (3, 3) of that submap against its middle pose."""
     own: Floats = np.asarray(np.linalg.inv(found.information + 1e-9 * np.eye(3)), np.float64)
-    # The submap itself is only as good as its own poses: nothing is known better than half a centimetre.
-    return np.asarray(turned(own, -found.pose_in_fixed[2]) + np.diag([0.005, 0.005, 0.002]) ** 2)
+    return np.asarray(turned(own, -found.pose_in_fixed[2]) + submap)

@@ -13,7 +13,7 @@ from slam.keyframes import Keyframe, around
 from slam.loops import loop_covariance
 from slam.mapper_settings import MapperSettings
 from slam.perception import Percept
-from slam.sessions import Sessions
+from slam.sessions import Recognition, Sessions
 
 FIRM = np.diag([1e-3, 1e-3, 1e-4]) ** 2  # covariance of a pose that is where it is by definition
 
@@ -23,6 +23,7 @@ class PoseGraph:
 
     def __init__(self, settings: MapperSettings) -> None:
         self.factors = FactorGraph(settings.graph)
+        self._beside = settings.verification.beside
         self.landmarks = LandmarkMap(settings.landmarks)
         self.drift = Drift()
         self.sessions = Sessions()
@@ -88,8 +89,14 @@ class PoseGraph:
 
     def close(self, fixed: int, found: Alignment) -> None:
         """The newest keyframe was found on the surface around an earlier one."""
-        pose, covariance = between(self.keyframes[fixed].pose, found.pose_in_fixed), loop_covariance(found)
-        self.tie(fixed, len(self.keyframes) - 1, pose, covariance)
+        recognised = self.recognised(fixed, found)
+        self.tie(fixed, recognised.moving, recognised.pose, recognised.covariance)
+
+    def recognised(self, fixed: int, found: Alignment) -> Recognition:
+        """The newest keyframe on the surface around an earlier one, which is only as sure as its own poses."""
+        submap = self.drift.of_submap(fixed, self._beside)
+        pose = between(self.keyframes[fixed].pose, found.pose_in_fixed)
+        return Recognition(fixed, len(self.keyframes) - 1, pose, loop_covariance(found, submap))
 
     def tie(self, fixed: int, moving: int, pose: Floats, covariance: Floats) -> None:
         """A keyframe was found at a pose (3,) in the frame of another, covariance (3, 3) in its own axes."""

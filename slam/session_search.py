@@ -4,9 +4,9 @@ from collections import Counter
 from functools import partial
 
 from frontend.registration import Alignment
-from frontend.rigid_motion import between, compose
+from frontend.rigid_motion import compose
 from slam.logbook import Logbook
-from slam.loops import Tried, loop_covariance
+from slam.loops import Tried
 from slam.mapper_settings import MapperSettings
 from slam.pose_graph import PoseGraph
 from slam.relocalisation import relocalise
@@ -62,8 +62,7 @@ class SessionSearch:
 
     def _confirmed(self, fixed: int, alignment: Alignment, scans: tuple[int, int]) -> bool:
         graph = self._graph
-        pose = between(graph.keyframes[fixed].pose, alignment.pose_in_fixed)
-        found = Recognition(fixed, len(graph.keyframes) - 1, pose, loop_covariance(alignment))
+        found = graph.recognised(fixed, alignment)
         earlier = graph.sessions.confirm(found, graph.keyframes)
         if earlier is None:
             graph.refuse("place", scans, f"{alignment.matched:.0%} matched, not yet said by another view")

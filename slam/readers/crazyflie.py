@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from frontend.scan import Scan, Sensor
-from slam.readers.multi_scans import gathered
+from slam.readers.multi_scans import ODOMETRY, gathered
 from slam.readers.recording import Recording, RecordingError
 from slam.readers.sieve import LineError, Sieve, in_time, numbers, refuse_impossible
 from slam.trajectory_file import Trajectory
@@ -28,7 +28,7 @@ def read_crazyflie(path: Path, strict: bool) -> Recording:
     sieve.check()
     poses, times = np.array([scan.odometry for scan in scans]), np.array([scan.time for scan in scans])
     trail = Trajectory(times, poses[:, :2], poses[:, 2])
-    return Recording(path.name.split(".")[0], gathered(scans), tuple(sieve.damaged), odometry=trail)
+    return Recording(path.name.split(".")[0], gathered(scans), tuple(sieve.damaged), ODOMETRY, trail)
 
 
 def _row(text: str) -> Scan:

@@ -11,12 +11,16 @@ import numpy as np
 
 from frontend.rigid_motion import between, transform
 from frontend.scan import Floats, Scan, Sensor
+from slam.readers.recording import OdometryNoise
 
 PIECE = 4.0  # metres of way in one multi-scan; longer shows more and trusts the odometry more
 STEP = 0.5  # metres of way, or
 TURN = 0.5  # radians of turn, from one multi-scan to the next
 BEARINGS = np.radians(np.arange(-178.5, 180, 3.0))  # as fine as four beams fill a piece of a corridor
 DRIFT = 0.01  # metres of odometry error per metre of way, added to the noise of a reading
+# The same as a fact of the robot: the way between multi-scans is trusted as far as the way within them, which
+# neighbours share, so that registration could only say it again.
+ODOMETRY = OdometryNoise(distance_noise=DRIFT, turn_noise=DRIFT, turn_per_metre_noise=DRIFT)
 
 
 def gathered(scans: Sequence[Scan]) -> tuple[Scan, ...]:

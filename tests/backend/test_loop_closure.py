@@ -156,3 +156,17 @@ def test_a_place_farther_off_than_its_doubt_is_not_told() -> None:
     told = {one.pose for one in beyond(poses, drift, SETTINGS)}
     doubts = SETTINGS.sigmas * drift.place_from(299, poses[:, :2])
     assert all(299 - pose < SETTINGS.near + doubts[pose] for pose in told)
+
+
+def test_a_submap_errs_by_the_mean_of_its_walks_away_from_the_middle() -> None:
+    """Against walks that are drawn: six steps to either side, each as unsure as the chain says."""
+    rng, beside, steps = np.random.default_rng(0), 6, 20000
+    walks = np.cumsum(rng.normal(0, 0.02, (steps, 2, beside)), axis=2)
+    mean = walks.sum(axis=(1, 2)) / (2 * beside + 1)
+    submap = chain(40).of_submap(20, beside)
+    assert np.sqrt(submap[0, 0]) == pytest.approx(mean.std(), rel=0.03)
+    np.testing.assert_allclose(submap, np.diag([STEP[0, 0], STEP[0, 0], STEP[2, 2]]) * submap[0, 0] / STEP[0, 0])
+
+
+def test_a_submap_of_a_pose_without_a_chain_is_as_sure_as_can_be() -> None:
+    np.testing.assert_array_equal(Drift().of_submap(0, 6), np.zeros((3, 3)))

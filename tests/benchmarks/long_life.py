@@ -20,7 +20,7 @@ from slam.mapper import Mapper
 from slam.readers.recording import Recording
 from slam.recordings import open_recording
 from slam.scores.trajectories import Spread, read_relations, relation_errors
-from slam.settings import Settings
+from slam.settings import Settings, knowing
 from tests.benchmarks.poses import WARM_UP, Row, odometry_of, recordings, row, track_of, wall_gaps
 
 SETTINGS = Settings()
@@ -87,8 +87,9 @@ def resume_rows(recording: Recording) -> list[Row]:
 
 def drone_rows(path: Path) -> list[Row]:
     """Four beams along corridors flown more than once: how far apart the visits see a wall."""
-    scans = open_recording(path).scans
-    mapper, estimate, _ = mapped(scans)
+    flight = open_recording(path)
+    scans = flight.scans
+    mapper, estimate, _ = mapped(scans, settings=knowing(SETTINGS, flight.odometry_noise))
     wheels = replace(estimate, poses=odometry_of(scans))
     closed = sum(made.what == "loop" and made.accepted for made in estimate.decisions)
     gaps, by_odometry = wall_gaps(mapper, estimate), wall_gaps(mapper, wheels)
@@ -101,9 +102,11 @@ def drone_rows(path: Path) -> list[Row]:
     ]  # fmt: skip
 
 
-def mapped(scans: Sequence[Scan], starts: Sequence[int] = ()) -> tuple[Mapper, Estimate, float]:
+def mapped(
+    scans: Sequence[Scan], starts: Sequence[int] = (), settings: Settings = SETTINGS
+) -> tuple[Mapper, Estimate, float]:
     """The mapper after all scans, its estimate, and the CPU seconds of the slowest scan."""
-    mapper, slowest = Mapper(SETTINGS.frontend, SETTINGS.poses), 0.0
+    mapper, slowest = Mapper(settings.frontend, settings.poses), 0.0
     for number, scan in enumerate(scans):
         if number in starts:
             mapper.begin_session("another drive")

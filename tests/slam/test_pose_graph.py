@@ -35,25 +35,43 @@ def driven(count: int, step: Floats = STEP) -> PoseGraph:
     return graph
 
 
+def after_sure_ones(count: int) -> PoseGraph:
+    """So many doubtful steps after seven that are not."""
+    graph = PoseGraph(MapperSettings())
+    graph.begin_session(0, PERCEPTS[0])
+    for number in range(7 + count):
+        go_on(graph, STEP, SURE if number < 7 else DOUBTFUL)
+    return graph
+
+
 def found_at(pose: Floats) -> Alignment:
     """A firm alignment at a pose (3,)."""
     return Alignment(pose, np.asarray(np.linalg.inv(SURE)), np.empty((0, 2), np.int64), 0.01, 0.9, 0.8)
 
 
 def test_a_loop_moves_the_newest_keyframe_whole_and_those_before_it_by_their_share() -> None:
-    graph = driven(5)
-    graph.close(0, found_at(np.array([4.04, 0.0, 0.0])))
+    graph = after_sure_ones(4)
+    graph.close(0, found_at(np.array([11.04, 0.0, 0.0])))
     graph.factors.solve()
     graph.settle()
-    np.testing.assert_allclose(graph.keyframe_poses[:, 0], [0, 1.01, 2.02, 3.03, 4.04], atol=1e-3)
+    np.testing.assert_allclose(graph.keyframe_poses[7:, 0], [7, 8.01, 9.02, 10.03, 11.04], atol=1e-3)
     assert [keyframe.pose[0] for keyframe in graph.keyframes] == graph.keyframe_poses[:, 0].tolist()
 
 
 def test_a_loop_lessens_the_doubt_of_the_place_it_was_closed_to() -> None:
-    graph = driven(8)
-    before = graph.drift.place_from(7, graph.keyframe_poses[:, :2])[0]
-    graph.close(0, found_at(graph.keyframe_poses[7]))
-    assert graph.drift.place_from(7, graph.keyframe_poses[:, :2])[0] < 0.2 * before
+    graph = after_sure_ones(7)
+    before = graph.drift.place_from(14, graph.keyframe_poses[:, :2])[0]
+    graph.close(0, found_at(graph.keyframe_poses[14]))
+    assert graph.drift.place_from(14, graph.keyframe_poses[:, :2])[0] < 0.05 * before
+
+
+def test_a_loop_is_no_surer_than_the_submap_it_was_found_on() -> None:
+    sure, doubtful = after_sure_ones(4), driven(12)
+    for graph in (sure, doubtful):
+        graph.close(0, found_at(graph.keyframe_poses[-1]))
+    firm, loose = (np.linalg.inv(graph.factors.ties[-1].information) for graph in (sure, doubtful))
+    assert np.sqrt(firm[0, 0]) < 0.002
+    assert np.sqrt(loose[0, 0]) > 0.1
 
 
 def test_scans_beside_a_keyframe_go_along_where_it_is_moved() -> None:
