@@ -5,9 +5,9 @@ from typing import Self
 
 import numpy as np
 
-from frontend.point_to_line import faces_towards, in_order, sort_into_cells
+from frontend.point_to_line import faces_towards, in_order, lying_on, sort_into_cells
 from frontend.rigid_motion import rotation, transform
-from frontend.scan import Floats, Integers
+from frontend.scan import Booleans, Floats, Integers
 from frontend.surface import Surface
 
 CELL = 0.25  # metres; about the distance at which registration looks for partners
@@ -54,3 +54,16 @@ class LocalMap:
         """Prepare faces, at least one."""
         order, first, corner, columns, rows = sort_into_cells(faces.points, CELL)
         return cls(Faces(*in_order(faces.points, faces.normals, order)), first, corner, columns, rows)
+
+    def lying(self, placed: Faces, near: float, across: float) -> tuple[Booleans, Booleans]:
+        """(n,) which placed faces have faces of the map within `near` metres, and which lie on the line of the
+        most alike of these, by place and facing side, but for `across` metres.
+
+        How far along the wall the nearest is does not count: far along a wall, faces lie farther apart than partners do
+        in registration, where only a scan from the very same place would find them.
+        """
+        faces, limits = self.faces, np.array([CELL, near, across])
+        return lying_on(
+            placed.points, placed.normals, faces.points, faces.normals,
+            self.first, self.corner, self.columns, self.rows, limits,
+        )  # fmt: skip

@@ -3,7 +3,7 @@
 import numpy as np
 
 from frontend.compiled import compiled
-from frontend.scan import Floats, Integers
+from frontend.scan import Booleans, Floats, Integers
 
 SETTLED = 0.01  # a pass ends when a step moves no surface by more than this share of its Cauchy width
 FAR = 5.0  # metres; about where the surface lies that a turn moves
@@ -75,6 +75,39 @@ def nearest_face(
                     if d < best and normal[0] * normals[j, 0] + normal[1] * normals[j, 1] > alike:
                         partner, best = j, d
     return partner
+
+
+@compiled
+def lying_on(
+    placed: Floats, turned: Floats, points: Floats, normals: Floats,
+    first: Integers, corner: Floats, columns: int, rows: int, limits: Floats,
+) -> tuple[Booleans, Booleans]:  # fmt: skip
+    """(n,) which placed points and normals (n, 2) have cell-sorted faces (k, 2) near, and which lie on the line of the
+    most alike of these: the nearest by place and facing side, a unit of normal counting as a metre.
+
+    limits: cell, metres that are near, metres across a face's line that lie on it.
+    """
+    near, on = np.zeros(len(placed), np.bool_), np.zeros(len(placed), np.bool_)
+    cell, reach = limits[0], limits[1]
+    for i in range(len(placed)):
+        x, y = placed[i, 0] - corner[0], placed[i, 1] - corner[1]
+        best, across = reach * reach, np.inf
+        for column in range(max(int((x - reach) // cell), 0), min(int((x + reach) // cell), columns - 1) + 1):
+            low, high = max(int((y - reach) // cell), 0), min(int((y + reach) // cell), rows - 1)
+            if low > high:
+                continue
+            # The cells of a column lie behind one another.
+            for j in range(first[column * rows + low], first[column * rows + high + 1]):
+                dx, dy = placed[i, 0] - points[j, 0], placed[i, 1] - points[j, 1]
+                apart = dx * dx + dy * dy
+                if apart >= reach * reach:
+                    continue
+                near[i] = True
+                apart += (turned[i, 0] - normals[j, 0]) ** 2 + (turned[i, 1] - normals[j, 1]) ** 2
+                if apart < best:
+                    best, across = apart, abs(dx * normals[j, 0] + dy * normals[j, 1])
+        on[i] = across < limits[2]
+    return near, on
 
 
 @compiled

@@ -7,16 +7,14 @@ corridor the place is then moved as far as it fits as well: what is left between
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from frontend.correlative_search import ScoreGrid, SearchSettings
 from frontend.local_map import Faces, LocalMap
 from frontend.registration import Alignment, Guess, RegistrationSettings, register
 from frontend.rigid_motion import between
-from frontend.scan import Booleans, Floats
+from frontend.scan import Floats
 from frontend.visibility import Visibility, VisibilitySettings, look
 from slam.perception import Percept
 
@@ -101,34 +99,13 @@ class Looked:
     registration: RegistrationSettings
     visibility: VisibilitySettings
 
-    @cached_property
-    def _trees(self) -> tuple[cKDTree, cKDTree]:
-        """Of the faces' places, and of their places and facing sides: a unit of normal counts as a metre."""
-        faces = self.local_map.faces
-        return cKDTree(faces.points), cKDTree(np.hstack([faces.points, faces.normals]))
-
     def lay(self, guess: Guess, start: Floats | None = None) -> Laid:
         """The scan pulled onto the map from there, or from another start (3,)."""
         found = register(self.percept.surface, self.local_map, guess, self.registration, start)
         seen = look(self.percept.fused, found.pose_in_fixed, self.local_map.faces, self.visibility)
-        covered, on = self._lying(found.pose_in_fixed)
+        placed = Faces.placed(self.percept.surface, found.pose_in_fixed)
+        covered, on = self.local_map.lying(placed, NEAR, self.registration.distances[-1])
         return Laid(found, seen, len(on), int(on.sum()), int((covered & ~on).sum()))
-
-    def _lying(self, pose: Floats) -> tuple[Booleans, Booleans]:
-        """(n,) which of the surface at a pose (3,) lies near faces of the map, and which on the line of one.
-
-        Far along a wall the faces lie farther apart than partners do in registration, where only a scan from the very
-        same place would find them: how far a reading is along the wall from the nearest does not count.
-        """
-        faces = self.local_map.faces
-        placed = Faces.placed(self.percept.surface, pose)
-        near, alike = self._trees
-        covered = np.isfinite(near.query(placed.points, distance_upper_bound=NEAR)[0])
-        partners = alike.query(np.hstack([placed.points, placed.normals]), distance_upper_bound=NEAR)[1]
-        known = partners < len(faces.points)
-        partners = np.where(known, partners, 0)
-        across = np.einsum("ij,ij->i", placed.points - faces.points[partners], faces.normals[partners])
-        return covered, known & (np.abs(across) < self.registration.distances[-1])
 
 
 def place_unguided(looked: Looked, guess: Guess, window: tuple[float, float], settings: UnguidedSettings) -> Unguided:

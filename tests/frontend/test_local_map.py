@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 from shapely import box
 
 from frontend.local_map import Faces, LocalMap
@@ -60,3 +61,22 @@ def test_a_local_map_holds_every_face_once(rng: np.random.Generator) -> None:
     wanted = np.column_stack([faces.points, faces.normals])
     held = np.column_stack([kept.points, kept.normals])
     np.testing.assert_array_equal(held[np.lexsort(held.T)], wanted[np.lexsort(wanted.T)])
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_what_lies_near_the_map_and_on_its_lines_is_what_trees_find(seed: int) -> None:
+    """By place alone, and by place and facing side, a unit of normal counting as a metre."""
+    rng = np.random.default_rng(seed)
+    angles = rng.uniform(-np.pi, np.pi, (2, 150))
+    faces, placed = (
+        Faces(rng.uniform(-3, 3, (150, 2)) * stretch, np.column_stack([np.cos(a), np.sin(a)]))
+        for a, stretch in zip(angles, (1.0, 1.3), strict=True)
+    )
+    near, on = LocalMap.of(faces).lying(placed, 0.6, 0.15)
+    expected = cKDTree(faces.points).query(placed.points)[0] < 0.6
+    both = cKDTree(np.hstack([faces.points, faces.normals]))
+    apart, partners = both.query(np.hstack([placed.points, placed.normals]))
+    across = np.sum((placed.points - faces.points[partners]) * faces.normals[partners], axis=1)
+    np.testing.assert_array_equal(near, expected)
+    np.testing.assert_array_equal(on, (apart < 0.6) & (np.abs(across) < 0.15))
+    assert 10 < np.count_nonzero(on) < np.count_nonzero(near) < 150
