@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from planners.box_space import ConfigurationSpaceSettings
-from planners.motion import Course, clearance_of, course_of
 from planners.path import Answer, Path
 from planners.robot import Robot
 from planners.visibility import Roadmap, parted, roadmap_of, shortest
@@ -22,15 +22,15 @@ class DiscSpace:
     world: World
     robot: Robot
     settings: ConfigurationSpaceSettings
-    course: Course
     roadmap: Roadmap
     radius: float
 
 
 def prepare_disc(world: World, robot: Robot, settings: ConfigurationSpaceSettings) -> DiscSpace:
     """The roadmap that all queries share."""
+    shapely.prepare(world.boundary)
     radius = robot.radius + settings.clearance
-    return DiscSpace(world, robot, settings, course_of(world, robot), roadmap_of(world, radius), radius)
+    return DiscSpace(world, robot, settings, roadmap_of(world, radius), radius)
 
 
 def query_disc(space: DiscSpace, start: Floats, goal: Floats) -> Answer:
@@ -38,7 +38,8 @@ def query_disc(space: DiscSpace, start: Floats, goal: Floats) -> Answer:
     points = shortest(space.roadmap, start[:2], goal[:2])
     if points is not None:
         poses = _headed(points, start[2], goal[2])
-        clearance = max(clearance_of(space.course, poses, 1e-3 * space.radius), space.settings.clearance)
+        nearest = float(shapely.distance(space.world.boundary, shapely.linestrings(points)))
+        clearance = max(nearest - space.robot.radius, space.settings.clearance)
         certificate = "every piece keeps more than the radius from every wall"
         return Answer("path", f"the shortest path, by {len(points) - 2} corners", Path(poses, clearance, certificate))
     if not parted(space.world, space.radius, start[:2], goal[:2]):
