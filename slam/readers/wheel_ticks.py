@@ -15,7 +15,7 @@ from slam.readers.sieve import LineError, Sieve, in_time, numbers
 
 METRES_PER_TICK = 0.349e-3
 WHEEL_BASE = 0.173
-BEAM_STEP = 2 * np.pi / 1024
+FIELD = np.radians(240.0)  # that the scanner's beams share evenly, however many a line holds
 SECONDS_PER_RADIAN = 0.1 / (2 * np.pi)  # the scanner's mirror turns ten times a second
 SCANNER = Sensor("lidar", max_range=4.0, min_range=0.02, range_noise=0.01, quantum=0.001, mount=(0.03, 0.0, 0.0))
 
@@ -55,7 +55,7 @@ def straightened(arrived: list[Scan], wheels: Wheels) -> tuple[Scan, ...]:
     """The scans at the middle of their sweeps, by the wheels' clock, as if the robot had stood still."""
     beams = min(scan.ranges.size for scan in arrived)
     arrivals = np.array([scan.time for scan in arrived])
-    turns = turns_seen(np.array([scan.ranges[:beams] for scan in arrived]), BEAM_STEP)
+    turns = turns_seen(np.array([scan.ranges[:beams] for scan in arrived]), FIELD / beams)
     times = arrivals - lag(arrivals, turns, wheels.times, wheels.poses[:, 2])
     scans = []
     for scan, time, pose in zip(arrived, times, wheels.at(times), strict=True):
@@ -108,5 +108,5 @@ def _scan(text: str) -> Scan:
         raise LineError("a range is negative or NaN")
     # Below the scanner's least range it writes error codes.
     ranges = np.where(metres < SCANNER.min_range, np.nan, metres)
-    bearings = BEAM_STEP * (np.arange(ranges.size, dtype=np.float64) - ranges.size // 2)
+    bearings = FIELD / ranges.size * (np.arange(ranges.size, dtype=np.float64) - ranges.size // 2)
     return Scan(bearings, ranges, SCANNER, np.zeros(3), float(moment) / 1000)

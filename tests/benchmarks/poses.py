@@ -39,6 +39,7 @@ LOGS = {"intel": "sparse", "intel_dense": "dense"}  # and what the file of the p
 ELSEWHERE = "peers: given figures, measured elsewhere on another machine with the same log and relations"
 APART = 60.0  # seconds between two visits of one wall
 NEAR = 0.3  # metres between faces of two visits that are taken for one wall
+LAGS = np.arange(-6, 7) * 0.05  # seconds that a camera's clock may be off
 WARM_UP = 120  # scans: enough to compile every loop and to load what closes loops
 
 Row = dict[str, Any]
@@ -145,7 +146,7 @@ def camera_rows(folder: Path) -> list[Row]:
     What stands nearer to the camera than the floor looks larger: cylinders and robot, though not the walls.
     """
     scans = open_recording(folder).scans
-    _, estimate = mapped(scans)
+    mapper, estimate = mapped(scans)
     reference = np.array([line.split()[1:4] for line in (folder / "robot4_reference.txt").open()], float) / 1000
     pairs = nearest_in_time(np.array([scan.time for scan in scans]), reference[:, 0], 0.1)
     true = reference[pairs[1], 1:]
@@ -158,7 +159,20 @@ def camera_rows(folder: Path) -> list[Row]:
     ):
         rmse, by_wheels = (Spread.of(absolute_errors(scaled(places), true)).rmse for places in (ours, wheels))
         found.append(row(f"lego_arena: RMSE against the camera, {name}", rmse, "m", {"wheels alone": by_wheels}, note))
-    return found
+    lagging = [lagging_rmse(scans, estimate.poses, reference, lag) for lag in LAGS]
+    best = int(np.argmin(lagging))
+    note = f"the camera's clock {LAGS[best]:+.2f} s after the wheels' fits best, as its scale does"
+    found.append(row("lego_arena: RMSE against the camera, and its clock", lagging[best], "m", {}, note))
+    gap = float(np.mean(view_gaps(mapper, estimate)))
+    return [*found, row("lego_arena: mean gap between views of a wall", gap, "m", {}, "no camera is needed for that")]
+
+
+def lagging_rmse(scans: Sequence[Scan], poses: Floats, reference: Floats, lag: float) -> float:
+    """RMSE of poses (n, 3) against a reference (m, 3) = time, x, y of another scale, so many seconds late."""
+    times = np.array([scan.time for scan in scans]) + lag
+    seen = (times > reference[0, 0]) & (times < reference[-1, 0])
+    true = np.column_stack([np.interp(times[seen], reference[:, 0], reference[:, axis]) for axis in (1, 2)])
+    return Spread.of(absolute_errors(scaled_to(poses[seen, :2], true), true)).rmse
 
 
 def scaled_to(estimated: Floats, true: Floats) -> Floats:
