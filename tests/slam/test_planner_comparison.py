@@ -10,7 +10,8 @@ from frontend.scan import Floats
 from planners.path import Answer, Path
 from planners.robot import Robot
 from planners.world import World
-from slam.planner_comparison import CELLS, CONES, Trial, compare, trial, trial_values, verdict
+from slam.plan_question import CELLS, CONES
+from slam.planner_comparison import Trial, compare, trial, trial_values, verdict
 from slam.planning import PlanningSettings
 from tests.planners.known_worlds import LONG, corner, corner_query, diagonal
 
