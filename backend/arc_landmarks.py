@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from backend.arc_association import AssociationSettings, Belief, Known, Placement, associate
 from backend.arc_births import Birth, BirthSettings, Loose, births
 from backend.arcs import Arcs, seen_wall
+from backend.doubled_landmarks import DoubleSettings, doubled
 from backend.factor_graph import FactorGraph
 from backend.odometry import Move
 from backend.square_walls import SquareSettings, SquareWalls
@@ -25,6 +26,7 @@ class ArcLandmarkSettings:
 
     association: AssociationSettings = field(default_factory=AssociationSettings)
     births: BirthSettings = field(default_factory=BirthSettings)
+    doubles: DoubleSettings = field(default_factory=DoubleSettings)
     square: SquareSettings = field(default_factory=SquareSettings)
     reach: float = 5.5  # metres around the robot in which landmarks are looked for; larger looks farther
     fresh: int = 15  # scans since a landmark was seen after which to see it again is a loop; larger doubts fewer
@@ -51,6 +53,8 @@ class ArcLandmarks:
     def __init__(self, settings: ArcLandmarkSettings) -> None:
         self.settings = settings
         self._landmarks: list[_Landmark] = []
+        self._seen_by: list[set[int]] = []  # the poses that saw each landmark
+        self._gone: set[int] = set()  # landmarks that were another one
         self._counts: dict[bool, list[int]] = {True: [], False: []}
         self._waiting: list[tuple[int, Arcs, int]] = []  # pose, and which of its arcs
         self._square = SquareWalls(settings.square)
@@ -63,6 +67,8 @@ class ArcLandmarks:
     def forget(self) -> None:
         """What follows was taken elsewhere: nothing of it may be recognised by what was seen so far."""
         self._landmarks.clear()
+        self._seen_by.clear()
+        self._gone.clear()
         self._waiting.clear()
         self._square.forget()
 
@@ -78,8 +84,7 @@ class ArcLandmarks:
         return placement, near
 
     def _associated(self, graph: FactorGraph, last: int, move: Move, arcs: Arcs, near: list[int]) -> Placement:
-        walls = [self._landmarks[k].index for k in near if self._landmarks[k].wall]
-        edges = [self._landmarks[k].index for k in near if not self._landmarks[k].wall]
+        walls, edges = self._of_graph(near)
         belief = _moved(Belief(*graph.belief(last, walls, edges)), move)
         known = [self._known(k, walls, edges) for k in near]
         return associate(belief, known, arcs, self.settings.association)
@@ -98,6 +103,44 @@ class ArcLandmarks:
     def square(self, graph: FactorGraph) -> None:
         """Hold walls that were seen often enough, and solved, to stand square to others."""
         self._square.see(graph, np.array(self._counts[True], np.int64))
+
+    def unite(self, graph: FactorGraph, pose: int) -> bool:
+        """Whether what the newest pose saw turned out to be landmarks of before; they are one from now on."""
+        near = self._near(graph, pose)
+        pairs = [
+            (elder, younger)
+            for younger in range(len(near))
+            if self._landmarks[near[younger]].seen == pose
+            for elder in range(len(near))
+            if self._may_be_one(near[elder], near[younger])
+        ]
+        if not pairs:
+            return False
+        walls, edges = self._of_graph(near)
+        known = [self._known(k, walls, edges) for k in near]
+        found = doubled(Belief(*graph.belief(pose, walls, edges)), known, pairs, self.settings.doubles)
+        for elder, younger in found:
+            self._unite(graph, near[elder], near[younger])
+        return bool(found)
+
+    def _may_be_one(self, elder: int, younger: int) -> bool:
+        """What one scan saw beside each other is two."""
+        seen, again = self._seen_by[elder], self._seen_by[younger]
+        alike = self._landmarks[elder].wall == self._landmarks[younger].wall
+        return alike and min(seen) < min(again) and seen.isdisjoint(again)
+
+    def _unite(self, graph: FactorGraph, elder: int, younger: int) -> None:
+        ours, theirs = self._landmarks[elder], self._landmarks[younger]
+        if ours.wall:
+            frames = graph.walls[[ours.index, theirs.index]]
+            along = float((frames[1, :2] - frames[0, :2]) @ [-np.sin(frames[0, 2]), np.cos(frames[0, 2])])
+            ours = replace(ours, start=min(ours.start, theirs.start + along), stop=max(ours.stop, theirs.stop + along))
+            graph.unite_walls(ours.index, theirs.index)
+        else:
+            graph.unite_landmarks(ours.index, theirs.index)
+        self._landmarks[elder] = replace(ours, seen=max(ours.seen, theirs.seen))
+        self._seen_by[elder] |= self._seen_by[younger]
+        self._gone.add(younger)
 
     def conceive(self, graph: FactorGraph, pose: int, turn: float) -> None:
         """Bear what the waiting arcs agree on. turn: radians by which the newest heading is in doubt."""
@@ -121,7 +164,16 @@ class ArcLandmarks:
             True: np.abs(np.sum((walls[:, :2] - place) * _normals(walls[:, 2]), axis=1)),
             False: np.linalg.norm(edges - place, axis=1),
         }
-        return [k for k, one in enumerate(self._landmarks) if away[one.wall][one.index] < self.settings.reach]
+        return [
+            k
+            for k, one in enumerate(self._landmarks)
+            if k not in self._gone and away[one.wall][one.index] < self.settings.reach
+        ]
+
+    def _of_graph(self, near: list[int]) -> tuple[list[int], list[int]]:
+        """Which of the graph's walls, and which of its other landmarks, these are."""
+        ones = [self._landmarks[k] for k in near]
+        return [one.index for one in ones if one.wall], [one.index for one in ones if not one.wall]
 
     def _known(self, landmark: int, walls: list[int], edges: list[int]) -> Known:
         one = self._landmarks[landmark]
@@ -151,12 +203,14 @@ class ArcLandmarks:
 
     def _add(self, landmark: _Landmark) -> int:
         self._landmarks.append(landmark)
+        self._seen_by.append(set())
         self._counts[landmark.wall].append(0)
         return len(self._landmarks) - 1
 
     def _tie(self, graph: FactorGraph, pose: int, arcs: Arcs, arc: int, landmark: int) -> None:
         one = self._landmarks[landmark]
         self._counts[one.wall][one.index] += 1
+        self._seen_by[landmark].add(pose)
         if not one.wall:
             graph.add_sighting(pose, one.index, *arcs.sighted_edge(arc))
             self._landmarks[landmark] = replace(one, seen=pose)

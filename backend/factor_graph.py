@@ -17,6 +17,9 @@ from backend.estimate import LandmarkTie, Tie
 Floats = NDArray[np.float64]
 
 
+ONE = 2e-3  # metres and radians by which two landmarks that are one may lie apart: less than anything measures
+
+
 class GraphError(Exception):
     """A factor names a pose or landmark that the graph does not hold."""
 
@@ -136,8 +139,7 @@ class FactorGraph:
             raise GraphError(f"landmark {landmark} is seen where pose {pose} stands itself: that has no bearing")
         along = position / distance
         turned = np.array([[-along[1], along[0]], along]) / np.array([[distance], [1.0]])
-        huber = gtsam.noiseModel.mEstimator.Huber.Create(self.settings.landmark_width)
-        noise = gtsam.noiseModel.Robust.Create(huber, _noise(turned @ covariance @ turned.T))
+        noise = self._huber(turned @ covariance @ turned.T)
         bearing = gtsam.Rot2(float(np.arctan2(position[1], position[0])))
         self._graph.add(gtsam.BearingRangeFactor2D(X(pose), L(landmark), bearing, distance, noise))
         self._sightings.append((pose, landmark, position, covariance))
@@ -152,8 +154,7 @@ class FactorGraph:
     def add_wall_sighting(self, pose: int, wall: int, frame: Floats, covariance: Floats) -> None:
         """The wall's frame was seen at `frame` (3,) in the frame of `pose`, covariance (3, 3) in the wall's axes."""
         self._check_pose(pose)
-        huber = gtsam.noiseModel.mEstimator.Huber.Create(self.settings.landmark_width)
-        noise = gtsam.noiseModel.Robust.Create(huber, _noise(covariance))
+        noise = self._huber(covariance)
         self._graph.add(gtsam.BetweenFactorPose2(X(pose), W(wall), gtsam.Pose2(*frame), noise))
         self._first_seen.setdefault(wall, pose)
 
@@ -172,6 +173,16 @@ class FactorGraph:
         noise = gtsam.noiseModel.Robust.Create(cauchy, _noise(np.diag([1e6, 1e6, self.settings.square]) ** 2))
         turned = gtsam.Pose2(0.0, 0.0, turns * np.pi / 2)
         self._graph.add(gtsam.BetweenFactorPose2(Y(direction), W(wall), turned, noise))
+
+    def unite_walls(self, wall: int, other: int) -> None:
+        """Two walls are one: they lie in a line."""
+        frames = [self._values.atPose2(W(index)) for index in (wall, other)]
+        along = gtsam.Pose2(0.0, frames[0].transformTo(frames[1].translation())[1], 0.0)
+        self._graph.add(gtsam.BetweenFactorPose2(W(wall), W(other), along, _noise(np.diag([ONE, 1e6, ONE]) ** 2)))
+
+    def unite_landmarks(self, landmark: int, other: int) -> None:
+        """Two landmarks are one: they lie in one place."""
+        self._graph.add(gtsam.BetweenFactorPoint2(L(landmark), L(other), np.zeros(2), _noise(np.eye(2) * ONE**2)))
 
     def belief(self, pose: int, walls: list[int], landmarks: list[int]) -> tuple[Floats, Floats]:
         """Mean (d,), joint covariance (d, d) of a pose, walls (3 each), landmarks (2 each), all in the room's axes."""
@@ -281,6 +292,10 @@ class FactorGraph:
         parameters.setRelativeErrorTol(settled)
         parameters.setlambdaInitial(1e-6)
         return gtsam.LevenbergMarquardtOptimizer(graph, self._values, parameters).optimize()
+
+    def _huber(self, covariance: Floats) -> gtsam.noiseModel.Base:
+        huber = gtsam.noiseModel.mEstimator.Huber.Create(self.settings.landmark_width)
+        return gtsam.noiseModel.Robust.Create(huber, _noise(covariance))
 
     def _insert(self, key: int, value: gtsam.Pose2 | Floats) -> None:
         self._values.insert(key, value)

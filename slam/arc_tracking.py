@@ -71,6 +71,8 @@ class ArcTracking:
         self._landmarks.conceive(graph, number, turn)
         graph.solve(self.settings.settled)
         self._landmarks.square(graph)
+        if self._landmarks.unite(graph, number):
+            graph.solve(self.settings.settled)
         covariance = turned(placement.covariance, -placement.pose[2])
         return graph.poses[number], covariance, len(placement.pairs)
 

@@ -45,3 +45,22 @@ def test_what_was_forgotten_is_not_recognised() -> None:
     landmarks.forget()
     placement, _ = landmarks.place(graph, 0, driven(np.zeros(3), OdometrySettings()), heard(TRUE[0]))
     assert placement.loose == (0, 1, 2)
+
+
+def test_walls_born_again_are_those_of_before() -> None:
+    graph, landmarks = FactorGraph(GraphSettings()), ArcLandmarks(ArcLandmarkSettings())
+    graph.add_pose(0, np.zeros(3))
+    graph.anchor(0, np.zeros(3), np.eye(3) * 1e-8)
+    landmarks.see(graph, 0, heard(TRUE[0]), Placement(np.zeros(3), np.zeros((3, 3)), (), (0, 1, 2)), [])
+    move = driven(np.array([0.53, 0.0, 0.02]), OdometrySettings())
+    graph.add_pose(1, move.pose)
+    graph.add_motion(0, 1, move.pose, move.covariance)
+    landmarks.see(graph, 1, heard(TRUE[1]), Placement(move.pose, move.covariance, (), (0, 1, 2)), [])
+    graph.solve()
+    assert len(graph.walls) == 2 * len(WALLS)
+    assert landmarks.unite(graph, 1)
+    graph.solve()
+    assert not landmarks.unite(graph, 1)
+    assert np.abs(graph.poses[1] - TRUE[1]).max() < 0.01
+    placement, near = landmarks.place(graph, 1, driven(np.array([0.5, 0.0, 0.0]), OdometrySettings()), heard(TRUE[2]))
+    assert sorted(near[which] for _, which in placement.pairs) == [0, 1, 2]

@@ -309,3 +309,23 @@ def test_a_loop_far_off_holds_once_it_was_taken_at_its_word() -> None:
     graph.believe(2)
     graph.solve()
     assert abs(graph.poses[-1, 0]) < 0.05
+
+
+def test_what_is_one_is_put_into_one_line_and_one_place() -> None:
+    graph, seen = FactorGraph(GraphSettings()), np.diag([0.01, 0.01, 0.01]) ** 2
+    graph.add_pose(0, np.zeros(3))
+    graph.anchor(0, np.zeros(3), np.eye(3) * 1e-10)
+    for k, off in enumerate((0.0, 0.02)):
+        frame = np.array([2.0 + off, 3.0 * k, off])
+        graph.add_wall(k, frame)
+        graph.add_wall_sighting(0, k, frame, seen)
+        graph.add_landmark(k, np.array([1.0 + off, 1.0]))
+        graph.add_sighting(0, k, np.array([1.0 + off, 1.0]), seen[:2, :2])
+    graph.unite_walls(0, 1)
+    graph.unite_landmarks(0, 1)
+    graph.solve(1e-9)
+    (first, second), normal = graph.walls, np.array([np.cos(graph.walls[0, 2]), np.sin(graph.walls[0, 2])])
+    assert first[2] == pytest.approx(second[2], abs=2e-3)
+    assert (second - first)[:2] @ normal == pytest.approx(0.0, abs=2e-3)
+    assert graph.landmarks[0] == pytest.approx(graph.landmarks[1], abs=2e-3)
+    assert graph.landmarks[:, 0].mean() == pytest.approx(1.01, abs=1e-3)

@@ -40,6 +40,7 @@ PIECES: tuple[tuple[str, Settings], ...] = (
     ("edges as landmarks", landmarks_with(births=replace(ARCS.landmarks.births, facing=0.0))),
     ("edges having a side", landmarks_with(**ALL_ROUND)),
     ("walls standing square", landmarks_with(square=replace(ARCS.landmarks.square, sightings=10**9))),
+    ("doubled landmarks united", landmarks_with(doubles=replace(ARCS.landmarks.doubles, evidence=np.inf))),
     ("loops", landmarks_with(revisits=10**9)),
     ("the outline's first guess", arcs_with(matched=2.0)),
     ("solving to the end", arcs_with(settled=Settings().poses.graph.settled)),
