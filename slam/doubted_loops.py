@@ -18,9 +18,9 @@ WIDEST = (1.0, 0.1)  # and by which, however much drifted in between, it may not
 class DoubtedLoops:
     """Those of a drive that no other view has confirmed."""
 
-    def __init__(self, graph: PoseGraph, settings: LoopSettings) -> None:
-        self.graph, self.apart, self.sigmas = graph, settings.confirmed, settings.sigmas
-        self._waiting: list[Recognition] = []
+    def __init__(self, graph: PoseGraph, settings: LoopSettings, firmness: float) -> None:
+        self.graph, self.apart, self.sigmas, self.firmness = graph, settings.confirmed, settings.sigmas, firmness
+        self._waiting: list[tuple[Recognition, bool]] = []  # and whether the surface held it in every direction
 
     def weigh(self, fixed: int, found: Alignment, proposes: bool) -> bool:
         """The newest keyframe was found on the surface around an earlier one; whether that is now believed, and the
@@ -29,12 +29,14 @@ class DoubtedLoops:
         graph, moving = self.graph, len(self.graph.keyframes) - 1
         scans = (graph.keyframes[fixed].scan, graph.keyframes[moving].scan)
         newest = graph.recognised(fixed, found)
-        far = [one for one in self._waiting if self._way_from(one.moving) >= self.apart]
+        # Two views may share the corners that say how far along a corridor they are: surface must say it of one.
+        firm = found.firmness >= self.firmness
+        far = [one for one, held in self._waiting if (held or firm) and self._way_from(one.moving) >= self.apart]
         earlier = next(
             (one for one in far if agreeing(newest, [one], graph.keyframes, self._drifted(one, newest))), None
         )
         if earlier is None:
-            self._waiting += [newest] * proposes
+            self._waiting += [(newest, firm)] * proposes
             graph.refuse("loop", scans, f"{found.matched:.0%} matched, not yet said by another view")
             return False
         graph.accept("loop", scans, f"{found.matched:.0%} matched, as said by another view")

@@ -22,7 +22,7 @@ class LoopSearch:
     def __init__(self, settings: MapperSettings, graph: PoseGraph, logbook: Logbook, verify: Verify) -> None:
         self.settings, self.verify = settings, verify
         self._graph, self._logbook = graph, logbook
-        self._doubted = DoubtedLoops(graph, settings.loops)
+        self._doubted = DoubtedLoops(graph, settings.loops, settings.verification.firmness)
         self._constellations = ConstellationSearch(settings, self._doubted, logbook, verify)
         self._way = np.zeros(2)  # metres and radians since loops were last searched
 

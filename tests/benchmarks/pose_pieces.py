@@ -56,6 +56,7 @@ ABLATIONS: tuple[tuple[str, MapperSettings], ...] = (
         replace(POSES, odometry=replace(POSES.odometry, scale_doubt=0.0, bias_doubt=0.0, mount_doubt=0.0)),
     ),
     ("knots as landmarks", replace(POSES, landmarks=replace(POSES.landmarks, proven=10**9))),
+    ("constellations", replace(POSES, constellations=replace(POSES.constellations, proposals=0))),
     ("the wider search", replace(POSES, tracking=replace(POSES.tracking, good=0.0, poor=0.0))),
     ("loops", replace(POSES, loops=replace(POSES.loops, skipped=10**9))),
     ("the last step over all faces", replace(POSES, refinement=replace(POSES.refinement, cells=()))),

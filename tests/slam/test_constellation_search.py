@@ -69,7 +69,7 @@ def test_a_corridor_without_corners_proposes_nothing() -> None:
         graph.factors.add_pose(number, pose)
         graph.add_keyframe(Keyframe(number, 0, percept, pose))
         graph.see_landmarks()
-    search = ConstellationSearch(settings, DoubtedLoops(graph, settings.loops), Logbook(), close_loop)
+    search = ConstellationSearch(settings, DoubtedLoops(graph, settings.loops, 0.05), Logbook(), close_loop)
     assert not search.find([Candidate(k, 20.0, 0.5, covered=False) for k in range(10)])
     assert not graph.decisions
 
@@ -77,6 +77,8 @@ def test_a_corridor_without_corners_proposes_nothing() -> None:
 def test_where_every_place_is_within_a_window_nobody_is_asked() -> None:
     logbook = Logbook()
     graph = PoseGraph(MapperSettings())
-    search = ConstellationSearch(MapperSettings(), DoubtedLoops(graph, MapperSettings().loops), logbook, close_loop)
+    search = ConstellationSearch(
+        MapperSettings(), DoubtedLoops(graph, MapperSettings().loops, 0.05), logbook, close_loop
+    )
     assert not search.find([])
     assert not logbook.lines

@@ -31,6 +31,10 @@ def out_and_back() -> PoseGraph:
     return graph
 
 
+def doubted(graph: PoseGraph) -> DoubtedLoops:
+    return DoubtedLoops(graph, LoopSettings(), 0.05)
+
+
 def extended(graph: PoseGraph, pose: Floats) -> None:
     new, step = len(graph.keyframes), between(graph.keyframes[-1].pose, pose)
     graph.factors.add_pose(new, pose)
@@ -39,16 +43,16 @@ def extended(graph: PoseGraph, pose: Floats) -> None:
     graph.add_keyframe(Keyframe(new, 0, PERCEPT, pose))
 
 
-def seen_from(graph: PoseGraph, fixed: int, ahead: float, lie: float = 0.0) -> Alignment:
+def seen_from(graph: PoseGraph, fixed: int, ahead: float, lie: float = 0.0, firmness: float = 0.5) -> Alignment:
     """The newest keyframe truly stands `ahead` metres before the fixed one."""
     pose = compose(graph.keyframes[fixed].pose, np.array([ahead + lie, 0.0, 0.0]))
-    return Alignment(pose, np.asarray(np.linalg.inv(SURE)), np.empty((0, 2), np.int64), 0.01, 0.95, 0.5)
+    return Alignment(pose, np.asarray(np.linalg.inv(SURE)), np.empty((0, 2), np.int64), 0.01, 0.95, firmness)
 
 
 def test_a_lone_doubted_loop_waits_and_moves_nothing() -> None:
     graph = out_and_back()
     before = graph.keyframe_poses
-    assert not DoubtedLoops(graph, LoopSettings()).weigh(0, seen_from(graph, 0, 0.0), proposes=True)
+    assert not doubted(graph).weigh(0, seen_from(graph, 0, 0.0), proposes=True)
     np.testing.assert_array_equal(graph.keyframe_poses, before)
     assert [(one.what, one.scans, one.accepted) for one in graph.decisions] == [("loop", (0, 79), False)]
 
@@ -56,7 +60,7 @@ def test_a_lone_doubted_loop_waits_and_moves_nothing() -> None:
 @pytest.mark.parametrize("step", [-4.0, 4.0])
 def test_two_from_different_places_that_agree_close_the_drive(step: float) -> None:
     graph = out_and_back()
-    loops = DoubtedLoops(graph, LoopSettings())
+    loops = doubted(graph)
     loops.weigh(5, seen_from(graph, 5, -5.0), proposes=True)
     extended(graph, compose(graph.keyframes[-1].pose, np.array([step, 0.0, 0.0])))
     assert loops.weigh(5, seen_from(graph, 5, step - 5.0), proposes=True)
@@ -67,7 +71,7 @@ def test_two_from_different_places_that_agree_close_the_drive(step: float) -> No
 @pytest.mark.parametrize(("step", "lie"), [(1.0, 0.0), (5.0, 3.0)])
 def test_a_second_one_from_the_same_place_or_that_says_something_else_confirms_nothing(step: float, lie: float) -> None:
     graph = out_and_back()
-    loops = DoubtedLoops(graph, LoopSettings())
+    loops = doubted(graph)
     loops.weigh(5, seen_from(graph, 5, -5.0), proposes=True)
     extended(graph, compose(graph.keyframes[-1].pose, np.array([step, 0.0, 0.0])))
     assert not loops.weigh(5, seen_from(graph, 5, step - 5.0, lie), proposes=True)
@@ -76,9 +80,18 @@ def test_a_second_one_from_the_same_place_or_that_says_something_else_confirms_n
 
 def test_what_was_found_in_too_small_a_window_confirms_but_never_waits() -> None:
     graph = out_and_back()
-    loops = DoubtedLoops(graph, LoopSettings())
+    loops = doubted(graph)
     loops.weigh(5, seen_from(graph, 5, -5.0), proposes=False)
     extended(graph, compose(graph.keyframes[-1].pose, np.array([4.0, 0.0, 0.0])))
     assert not loops.weigh(5, seen_from(graph, 5, -1.0), proposes=True)
     extended(graph, compose(graph.keyframes[-1].pose, np.array([4.0, 0.0, 0.0])))
     assert loops.weigh(5, seen_from(graph, 5, 3.0), proposes=False)
+
+
+@pytest.mark.parametrize(("firmness", "believed"), [((0.01, 0.01), False), ((0.01, 0.5), True), ((0.5, 0.01), True)])
+def test_of_two_in_a_corridor_one_must_be_held_along_it(firmness: tuple[float, float], believed: bool) -> None:
+    graph = out_and_back()
+    loops = doubted(graph)
+    loops.weigh(5, seen_from(graph, 5, -5.0, firmness=firmness[0]), proposes=True)
+    extended(graph, compose(graph.keyframes[-1].pose, np.array([4.0, 0.0, 0.0])))
+    assert loops.weigh(5, seen_from(graph, 5, -1.0, firmness=firmness[1]), proposes=True) is believed
