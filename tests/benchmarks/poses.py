@@ -16,6 +16,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from backend.estimate import Estimate
+from backend.polygon_merging import merge_views
 from frontend.local_map import Faces
 from frontend.rigid_motion import transform
 from frontend.scan import Floats, Scan
@@ -202,7 +203,24 @@ def closure_rows(path: Path) -> list[Row]:
         )
         | {"target": 0.015},
         row("aces: 95 % of the gaps are under", float(np.percentile(gaps, 95)), "m", {}, note),
+        alarm_row(mapper, estimate),
+        *(gap_row(name, scans, settings) for name, settings in ABLATIONS),
     ]
+
+
+def alarm_row(mapper: Mapper, estimate: Estimate) -> Row:
+    """How many decimetres of measured surface the merged map calls free."""
+    room = merge_views([percept.view for percept in mapper.percepts], estimate.poses)
+    disagree = sum("poses that disagree" in reason for reason in room.leak_reasons)
+    note = f"of {room.free.length:.0f} m of outline; at {disagree} the views disagree in turn"
+    return row("aces: wall-leak alarms", len(room.leaks), "", {}, note) | {"target": 0}
+
+
+def gap_row(name: str, scans: Sequence[Scan], settings: MapperSettings) -> Row:
+    """The mean gap with a piece left out."""
+    gaps = wall_gaps(*mapped(scans, settings))
+    note = f"what the piece is worth; {len(gaps)} faces seen again"
+    return row(f"aces, without {name}: mean gap between visits of a wall", float(np.mean(gaps)), "m", {}, note)
 
 
 def wall_gaps(mapper: Mapper, estimate: Estimate) -> Floats:
