@@ -11,6 +11,8 @@ from time import process_time
 from typing import Any
 
 import numpy as np
+from shapely.affinity import skew
+from shapely.geometry import mapping, shape
 
 from backend.estimate import Estimate
 from frontend.rigid_motion import between, wrap
@@ -29,6 +31,7 @@ from slam.trajectory_file import read_trajectory
 DATASETS = Path(__file__).parents[2] / "datasets"
 FLOORS = (*range(11, 18), *range(31, 37))  # seeds of random floors of six rooms, and of their drives
 UNSEEN = range(61, 71)  # the same, of floors that nobody looked at while the method was chosen
+ASKEW = range(71, 75)  # the same, of floors whose walls do not stand square
 NEAR = 0.05  # metres: the target for a floor
 Row = dict[str, Any]
 
@@ -62,6 +65,7 @@ def rows() -> list[Row]:
     office = judged(driven("office", read_plan(DATASETS / "plans" / "office.geojson"), 1))
     single = [drive_row(home), drive_row(office) | {"target": None}]
     groups = floor_rows("other floors", others) + floor_rows("floors never looked at", unseen)
+    groups += floor_rows("floors 3° off the square", [judged(askew_floor(seed, 3.0)) for seed in ASKEW])
     return [*moves, *single, *groups, nees_row([home, *others, *unseen, office])]
 
 
@@ -74,6 +78,14 @@ def apartment() -> Drive:
 def floor(seed: int) -> Drive:
     """A drive through a random floor of six rooms."""
     return driven(f"floor {seed}", build_world(random_plan(seed, 6)), seed)
+
+
+def askew_floor(seed: int, degrees: float) -> Drive:
+    """A drive through a random floor whose walls cross so much off the right angle."""
+    plan = random_plan(seed, 6)
+    for feature in plan["features"]:
+        feature["geometry"] = mapping(skew(shape(feature["geometry"]), xs=degrees, origin=(0, 0)))
+    return driven(f"askew floor {seed}", build_world(plan), seed)
 
 
 def basement_rows() -> list[Row]:
