@@ -59,6 +59,7 @@ class Odometry:
         self._filter.P = np.diag([*doubts, settings.mount_doubt, settings.mount_doubt]) ** 2
         self._intervals: deque[float] = deque(maxlen=100)
         self._slips = 0  # in a row
+        self.proven = False  # whether they ever claimed a move that was seen
         self._steady = SteadyMotion((settings.lost_metres, settings.lost_radians), settings.remembered)
 
     @property
@@ -129,7 +130,7 @@ class Odometry:
             self._slips += 1
         elif np.hypot(*wheels[:2]) > self.settings.least_distance or abs(wheels[2]) > self.settings.least_turn:
             # Only wheels that claim a move, and rightly, work: those that are stuck are right about a standing robot.
-            self._slips = 0
+            self._slips, self.proven = 0, True
         if distance <= self.settings.slip_gate:
             measured = residual[:, None] + jacobian @ self._filter.x
             self._filter.update(measured, R=noise, H=jacobian)

@@ -5,6 +5,7 @@ from time import perf_counter
 import numpy as np
 
 from backend.estimate import Estimate
+from backend.odometry import Move
 from frontend.rigid_motion import between
 from frontend.scan import Floats, Scan
 from slam.estimating import estimated
@@ -117,21 +118,14 @@ class Mapper:
         wheels = between(before.scan.odometry, percept.scan.odometry)
         seconds, odometry = percept.scan.time - before.scan.time, self._wheels.newest
         move, gap = odometry.expect(wheels, seconds)
-        settings = self.settings.tracking
-        # Nobody knows how long a corridor was in which the robot slid: what lies before it is no map of what follows.
-        recent = [keyframe.faces for keyframe in self._graph.last(settings.recent)]
-        held = recent[-max(len(self._graph.keyframes) - self._held, 1) :]
-        placed = self.logbook.answer(lambda: track(percept, last, move, held, settings))
-        if len(held) < len(recent) and placed.fit < settings.unguided.sure:
-            whole = self.logbook.answer(lambda: track(percept, last, move, recent, settings))
-            placed = max(placed, whole, key=lambda one: (one.refused is None, one.fit))
+        placed = self._placed(percept, move)
         if odometry.broken:
             self._wheels.slip(index)
         elif placed.refused is not None:
             # It may be the wheels that are wrong.
-            steady = odometry.steady(seconds)
-            again = self.logbook.answer(lambda: track(percept, last, steady, recent, settings))
-            placed = again if again.refused is None and again.matched >= settings.good else placed
+            again, settings = self._placed(percept, odometry.steady(seconds)), self.settings.tracking
+            wrong = again.matched >= settings.good or (again.fit >= settings.unguided.certain and not odometry.proven)
+            placed = again if again.refused is None and wrong else placed
         if gap is not None:
             decide = self._graph.accept if placed.refused is None else self._graph.refuse
             decide("gap", (index - 1, index), gap)
@@ -149,6 +143,18 @@ class Mapper:
                 self._graph.refuse("odometry", (index - 1, index), slipped)
                 self._wheels.slip(index)
         return placed, gap
+
+    def _placed(self, percept: Percept, move: Move) -> Placed:
+        """A scan placed after `move` from the newest, on what was seen since the robot last slid, or on more."""
+        settings, last = self.settings.tracking, self._graph.last_pose
+        recent = [keyframe.faces for keyframe in self._graph.last(settings.recent)]
+        # Nobody knows how long a corridor was in which the robot slid: what lies before it is no map of what follows.
+        held = recent[-max(len(self._graph.keyframes) - self._held, 1) :]
+        placed = self.logbook.answer(lambda: track(percept, last, move, held, settings))
+        if len(held) == len(recent) or placed.fit >= settings.unguided.sure:
+            return placed
+        whole = self.logbook.answer(lambda: track(percept, last, move, recent, settings))
+        return max(placed, whole, key=lambda one: (one.refused is None, one.fit))
 
     def _wander(self, index: int, placed: Placed, gap: str | None) -> Floats:
         """A scan that fits nowhere waits for the next; when none of them fits, they begin a session together."""

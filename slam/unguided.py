@@ -36,6 +36,7 @@ class UnguidedSettings:
     # and 1.4 in 13 of 100, that of a window of 3 m 1.4 in 22 (office corridors): more is needed where more was tried.
     believed: float = 1.0  # least fit in a window of `believed_metres`; larger gives up where much ground is new
     believed_metres: float = 1.5
+    certain: float = 1.6  # fit for which wheels that were never right before are wrong; 4 in 100 reach it elsewhere
     sure: float = 1.4  # fit over which little more could be known of a place; larger asks more often
     rise: float = 0.4  # of that for each doubling of the window; larger gives up sooner where the robot was lost
     surer: float = 9.2  # squared Mahalanobis distance (χ², 2 degrees of freedom, 1 %) by which the guess decides

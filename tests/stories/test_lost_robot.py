@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from shapely import Polygon, box
 
 from backend.estimate import Estimate
 from frontend.rigid_motion import between, compose
@@ -12,7 +13,8 @@ from slam.mapper import Mapper
 from slam.pipeline import merge_scans
 from slam.settings import Settings
 from slam.simulation.trajectory import in_first_frame
-from tests.simulated_drives import drive, furnished_room, once_round, round_building
+from slam.simulation.world import World
+from tests.simulated_drives import drive, furnished_room, once_round, round_building, world_of
 
 SETTINGS = Settings()
 TRUE = in_first_frame(once_round())
@@ -121,3 +123,27 @@ def test_a_drive_through_another_building_is_left_out_with_the_reason(scans: lis
     reasons = [made.reason for made in found.decisions if made.what == "session"]
     assert reasons == ["none of its 12 scans was recognised in the map: they are left out of it"]
     assert found.mapped.sum() == 40
+
+
+def rooms_apart(rng: np.random.Generator) -> tuple[World, Floats]:
+    """Two furnished rooms at the ends of a bare corridor of 26 m, and a way (p, 3) from the one into the other."""
+    places = rng.uniform((0.2, 0.2), (1.2, 3.8), (3, 2)) + np.array([[0, 0], [2.6, 0], [33, 0]])
+    boxes = [box(x, y, x + rng.uniform(0.4, 0.9), y + rng.uniform(0.4, 0.9)) for x, y in places]
+    right = [(0, 0), (5, 0), (5, 1.6), (31, 1.6), (31, 0), (36, 0)]
+    rooms = Polygon([*right, *((x, 5 - y) for x, y in reversed(right))])
+    along = np.arange(2.2, 33, 0.6)
+    return world_of(rooms, *boxes), np.column_stack([along, np.full(len(along), 2.5), np.zeros(len(along))])
+
+
+def test_wheels_that_stand_still_through_a_bare_corridor_are_told_and_both_its_ends_are_right() -> None:
+    """Nothing but the robot's pace says how long the corridor is: it is told, and what is left of it is doubted."""
+    world, way = rooms_apart(np.random.default_rng(0))
+    found = mapped([replace(scan, odometry=np.zeros(3)) for scan in drive(world, way, 0)])
+    told_of = [made.scans[-1] for made in found.decisions if "along the corridor" in made.reason]
+    assert len(told_of) > 10
+    assert all(4 < way[scan, 0] < 32 for scan in told_of)
+    for inside in (way[:, 0] < 5, way[:, 0] > 32):
+        first, *rest = np.flatnonzero(inside)
+        apart = [between(found.poses[first], found.poses[scan])[0] for scan in rest]
+        np.testing.assert_allclose(apart, way[rest, 0] - way[first, 0], atol=0.1)
+    assert np.max(np.abs(found.poses[:, 1])) < 0.1
