@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from backend.arc_association import AssociationSettings, Belief, Known, Placement, associate
 from backend.arc_births import Birth, BirthSettings, Loose, births
 from backend.arcs import Arcs, seen_wall
-from backend.doubled_landmarks import DoubleSettings, doubled
+from backend.doubled_landmarks import Doubles, DoubleSettings, doubled
 from backend.factor_graph import FactorGraph
 from backend.odometry import Move
 from backend.square_walls import SquareSettings, SquareWalls
@@ -32,6 +32,16 @@ class ArcLandmarkSettings:
     fresh: int = 15  # scans since a landmark was seen after which to see it again is a loop; larger doubts fewer
     revisits: int = 2  # such landmarks a scan must recognise at once; larger refuses more loops
     waiting: int = 6  # scans an arc waits for others; larger finds landmarks that are rarely seen
+
+
+@dataclass(frozen=True)
+class Reunion:
+    """What a pose saw looked like landmarks of before. poses: that saw those last, rising, and the newest; united:
+    whether they are one from now on; reason: why, or why not."""
+
+    poses: tuple[int, ...]
+    united: bool
+    reason: str
 
 
 @dataclass(frozen=True)
@@ -104,8 +114,8 @@ class ArcLandmarks:
         """Hold walls that were seen often enough, and solved, to stand square to others."""
         self._square.see(graph, np.array(self._counts[True], np.int64))
 
-    def unite(self, graph: FactorGraph, pose: int) -> bool:
-        """Whether what the newest pose saw turned out to be landmarks of before; they are one from now on."""
+    def unite(self, graph: FactorGraph, pose: int) -> Reunion | None:
+        """Make one what the newest pose saw and turned out to be landmarks of before; None if nothing is like them."""
         near = self._near(graph, pose)
         pairs = [
             (elder, younger)
@@ -115,13 +125,19 @@ class ArcLandmarks:
             if self._may_be_one(near[elder], near[younger])
         ]
         if not pairs:
-            return False
+            return None
         walls, edges = self._of_graph(near)
         known = [self._known(k, walls, edges) for k in near]
         found = doubled(Belief(*graph.belief(pose, walls, edges)), known, pairs, self.settings.doubles)
-        for elder, younger in found:
-            self._unite(graph, near[elder], near[younger])
-        return bool(found)
+        return None if found is None else self._decided(graph, pose, found, near)
+
+    def _decided(self, graph: FactorGraph, pose: int, found: Doubles, near: list[int]) -> Reunion:
+        pairs = [(near[elder], near[younger]) for elder, younger in found.pairs]
+        before = sorted({self._landmarks[elder].seen for elder, _ in pairs} - {pose})
+        if found.one:
+            for elder, younger in pairs:
+                self._unite(graph, elder, younger)
+        return Reunion((*before, pose), found.one, found.reason)
 
     def _may_be_one(self, elder: int, younger: int) -> bool:
         """What one scan saw beside each other is two."""

@@ -36,6 +36,18 @@ class DoubleSettings:
     facing: float = np.radians(60.0)  # between rays that meet one edge; larger pools both corners of a wall's end
 
 
+@dataclass(frozen=True)
+class Doubles:
+    """The best answer: pairs of (elder, younger) landmarks, as places among the known; whether they are one, and why.
+
+    Evidence is the logarithm of the odds against chance.
+    """
+
+    pairs: tuple[Pair, ...]
+    one: bool
+    reason: str
+
+
 class _Difference(NamedTuple):
     """How far the younger of two landmarks lies from the elder (2,), its slope (2, c) in columns (c,) of the belief,
     and the covariance (2, 2) that one thing found twice has; crowd: how many lie there by chance."""
@@ -47,10 +59,8 @@ class _Difference(NamedTuple):
     crowd: float
 
 
-def doubled(
-    belief: Belief, known: Sequence[Known], pairs: Sequence[Pair], settings: DoubleSettings
-) -> tuple[Pair, ...]:
-    """Pairs of (elder, younger) landmarks that are one, as places in `known`, out of those that may be."""
+def doubled(belief: Belief, known: Sequence[Known], pairs: Sequence[Pair], settings: DoubleSettings) -> Doubles | None:
+    """Which pairs of (elder, younger) landmarks are one, out of those that may be; None if none lie near enough."""
     possible = [
         pair
         for pair in pairs
@@ -59,12 +69,16 @@ def doubled(
     ]
     answers = [_grown(belief, known, possible, seed, settings) for seed in possible]
     if not answers:
-        return ()
+        return None
     weight, chosen = max(answers, key=lambda answer: answer[0])
     rivals = [other for other, pairs in answers if any(_contradict(p, q) for p in pairs for q in chosen)]
-    if weight < settings.evidence or max(rivals, default=-np.inf) > weight - settings.margin:
-        return ()
-    return chosen
+    walls = sum(known[elder].wall for elder, _ in chosen)
+    what = f"like those of before (walls: {walls}, edges: {len(chosen) - walls}), evidence {weight:.1f}"
+    if weight < settings.evidence:
+        return Doubles(chosen, False, f"{what}: under {settings.evidence:.1f} it may be chance")
+    if max(rivals, default=-np.inf) > weight - settings.margin:
+        return Doubles(chosen, False, f"{what}: another answer has {max(rivals):.1f}")
+    return Doubles(chosen, True, what)
 
 
 def _grown(

@@ -4,11 +4,12 @@ The outline still gives a first guess where it lies well on what was just seen.
 """
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from backend.arc_association import Placement
-from backend.arc_landmarks import ArcLandmarks, ArcLandmarkSettings
+from backend.arc_landmarks import ArcLandmarks, ArcLandmarkSettings, Reunion
 from backend.arcs import Arcs
 from backend.factor_graph import FactorGraph
 from backend.odometry import Move
@@ -36,6 +37,16 @@ class ArcTrackingSettings:
     least_faces: int = 8  # surface points on either side of a guess
 
 
+class Followed(NamedTuple):
+    """Where a scan was put (3,), how surely (3, 3, in its own axes), how many landmarks it was recognised by, and what
+    was decided about new ones that look like those of before."""
+
+    pose: Floats
+    covariance: Floats
+    recognised: int
+    reunion: Reunion | None
+
+
 class ArcTracking:
     """Places the scans of one drive, and ties them into the graph."""
 
@@ -54,12 +65,8 @@ class ArcTracking:
         alone = Placement(graph.poses[number], np.zeros((3, 3)), (), tuple(range(len(arcs.ranges))))
         self._landmarks.see(graph, number, arcs, alone, [])
 
-    def follow(
-        self, graph: FactorGraph, arcs: Arcs, surface: Surface, recent: list[Faces], move: Move
-    ) -> tuple[Floats, Floats, int]:
-        """Add the pose after `move` from the newest one, and solve; where it was put (3,), how surely (3, 3, in its own
-        axes), and how many landmarks it was recognised by.
-        """
+    def follow(self, graph: FactorGraph, arcs: Arcs, surface: Surface, recent: list[Faces], move: Move) -> Followed:
+        """Add the pose after `move` from the newest one, and solve."""
         poses = graph.poses
         number, last = len(poses), poses[-1]
         likely = self._likely(surface, recent, last, move)
@@ -71,10 +78,11 @@ class ArcTracking:
         self._landmarks.conceive(graph, number, turn)
         graph.solve(self.settings.settled)
         self._landmarks.square(graph)
-        if self._landmarks.unite(graph, number):
+        reunion = self._landmarks.unite(graph, number)
+        if reunion is not None and reunion.united:
             graph.solve(self.settings.settled)
         covariance = turned(placement.covariance, -placement.pose[2])
-        return graph.poses[number], covariance, len(placement.pairs)
+        return Followed(graph.poses[number], covariance, len(placement.pairs), reunion)
 
     def _likely(self, surface: Surface, recent: list[Faces], last: Floats, move: Move) -> Move:
         """The move from the pose `last` (3,) that the outline laid on recent ones and the wheels agree on; that of the

@@ -1,5 +1,6 @@
 """Mapping with a wide beam: every scan is a keyframe, placed by its arcs, and the factors are solved with each."""
 
+from backend.arc_landmarks import Reunion
 from backend.wheel_noise import driven
 from frontend.rigid_motion import between
 from frontend.scan import Floats
@@ -28,7 +29,7 @@ class SonarMapping:
         assert percept.arcs is not None
         wheels = between(old.percept.scan.odometry, percept.scan.odometry)
         recent = [keyframe.faces for keyframe in graph.last(self.settings.arcs.recent)]
-        pose, covariance, recognised = self.tracking.follow(
+        pose, covariance, recognised, reunion = self.tracking.follow(
             graph.factors, percept.arcs, percept.surface, recent, driven(wheels, self.settings.odometry)
         )
         graph.add_keyframe(Keyframe(scan, old.session, percept, pose))
@@ -37,4 +38,10 @@ class SonarMapping:
         if not recognised:
             reason = f"none of its {len(percept.arcs.ranges)} walls and edges was recognised: placed by the wheels"
             graph.refuse("registration", (scan,), reason)
+        if reunion is not None:
+            self._record(reunion)
         return pose
+
+    def _record(self, reunion: Reunion) -> None:
+        decide = self._graph.accept if reunion.united else self._graph.refuse
+        decide("double", tuple(self._graph.keyframes[pose].scan for pose in reunion.poses), reunion.reason)

@@ -58,9 +58,13 @@ def test_walls_born_again_are_those_of_before() -> None:
     landmarks.see(graph, 1, heard(TRUE[1]), Placement(move.pose, move.covariance, (), (0, 1, 2)), [])
     graph.solve()
     assert len(graph.walls) == 2 * len(WALLS)
-    assert landmarks.unite(graph, 1)
+    reunion = landmarks.unite(graph, 1)
+    assert reunion is not None
+    assert reunion.united
+    assert reunion.poses == (0, 1)
+    assert reunion.reason.startswith("like those of before (walls: 3, edges: 0), evidence")
     graph.solve()
-    assert not landmarks.unite(graph, 1)
+    assert landmarks.unite(graph, 1) is None
     assert np.abs(graph.poses[1] - TRUE[1]).max() < 0.01
     placement, near = landmarks.place(graph, 1, driven(np.array([0.5, 0.0, 0.0]), OdometrySettings()), heard(TRUE[2]))
     assert sorted(near[which] for _, which in placement.pairs) == [0, 1, 2]

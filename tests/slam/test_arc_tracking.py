@@ -10,7 +10,7 @@ from backend.wheel_noise import driven
 from frontend.local_map import Faces
 from frontend.rigid_motion import between, compose
 from frontend.scan import Floats
-from slam.arc_tracking import ArcTracking, ArcTrackingSettings
+from slam.arc_tracking import ArcTracking, ArcTrackingSettings, Followed
 from slam.perception import FrontendSettings, Percept, perceive
 from slam.simulation.random_plans import random_plan
 from slam.simulation.record import Recipe, drive_through
@@ -41,7 +41,7 @@ def started() -> tuple[ArcTracking, FactorGraph]:
     return tracking, graph
 
 
-def followed(move: Move, recent: list[Faces]) -> tuple[Floats, Floats, int]:
+def followed(move: Move, recent: list[Faces]) -> Followed:
     """Where the second scan is put after `move` (3,) from the first."""
     (tracking, graph), second = started(), simulated()[0][1]
     assert second.arcs is not None
@@ -60,7 +60,7 @@ def faces_at(pose: Floats) -> list[Faces]:
 
 def test_of_what_the_wheels_turn_wrongly_less_than_half_is_left_once_walls_are_heard_again() -> None:
     error = np.array([0.0, 0.0, 0.03])
-    (left, covariance, recognised), (right, _, _) = (followed(claimed(sign * error), NONE) for sign in (1, -1))
+    (left, covariance, recognised, _), (right, *_) = (followed(claimed(sign * error), NONE) for sign in (1, -1))
     assert recognised > 0
     assert abs(left[2] - right[2]) < 0.5 * 2 * error[2]
     assert covariance[2, 2] < claimed(error).covariance[2, 2]

@@ -82,3 +82,10 @@ def test_what_was_learnt_of_one_room_is_not_looked_for_in_the_next_session() -> 
     apart = graph.keyframes[2].pose - graph.keyframes[0].pose
     np.testing.assert_allclose(apart, graph.sessions.start(1), atol=1e-3)
     assert np.hypot(*graph.poses[3][:2]) < 1
+
+
+def test_what_looks_like_landmarks_of_before_is_told_with_its_reason() -> None:
+    decided = [made for made in mapped(simulated()[0]).decisions if made.what == "double"]
+    assert decided
+    assert all("evidence" in made.reason and len(made.scans) >= 2 for made in decided)
+    assert all(made.scans == tuple(sorted(set(made.scans))) for made in decided)
