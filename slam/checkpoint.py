@@ -18,7 +18,7 @@ from slam.readers.recording import Recording
 from slam.settings import Settings
 from slam.whole_output import write_whole
 
-FORMAT = 1
+FORMAT = 2
 
 
 class CheckpointError(Exception):

@@ -19,6 +19,8 @@ from slam.loops import Tried, Verify
 from slam.mapper_settings import MapperSettings
 from slam.relocalisation import nearest_view
 
+RIVAL = (0.5, 0.2)  # metres and radians from one another at which two poses that hold are two places
+
 
 class ConstellationSearch:
     """Looks for the newest keyframe among old ones that may be anywhere. verify: as for other loops."""
@@ -32,15 +34,21 @@ class ConstellationSearch:
         if not old:
             return False
         graph, newest = self._graph, self._graph.keyframes[-1]
+        holding: list[tuple[int, Alignment]] = []
         for tried in self._logbook.answer(lambda: self._tried(old)):
             if isinstance(tried.found, str):
                 graph.refuse("loop", (graph.keyframes[tried.fixed].scan, newest.scan), tried.found)
-            elif self._doubted.weigh(tried.fixed, tried.found, proposes=True):
-                return True
-        return False
+            else:
+                holding.append((tried.fixed, tried.found))
+        rivals = [found.pose_in_fixed for _, found in holding]
+        if _apart(rivals):
+            for fixed, _ in holding:
+                graph.refuse("loop", (graph.keyframes[fixed].scan, newest.scan), "another place holds the scan as well")
+            return False
+        return bool(holding) and self._doubted.weigh(*holding[0], proposes=True)
 
     def _tried(self, old: list[Candidate]) -> tuple[Tried, ...]:
-        """The places that constellations propose and what was found there, until one holds."""
+        """The places that constellations propose, and what was found at each."""
         settings, graph = self.settings, self._graph
         newest, tried = graph.keyframes[-1], []
         window = (max(one.metres for one in old), max(one.radians for one in old))
@@ -49,8 +57,6 @@ class ConstellationSearch:
         for pose in poses_of_corners(*self._corners(old), newest.pose, window, settings.constellations):
             nearest = old[nearest_view(pose, there, settings.loops.ahead)]
             tried.append(Tried(nearest.pose, self._verified(nearest, pose, recent)))
-            if not isinstance(tried[-1].found, str):
-                break
         return tuple(tried)
 
     def _corners(self, old: list[Candidate]) -> tuple[PlacedCorners, PlacedCorners]:
@@ -80,3 +86,9 @@ class ConstellationSearch:
         beside = around(graph.keyframes, candidate.pose, settings.beside, settings.beside)
         old = Faces.together([keyframe.faces for keyframe in beside])
         return self.verify(percept, pose, recent, old, (0.0, 0.0), settings)
+
+
+def _apart(poses: list[Floats]) -> bool:
+    """Whether some of the poses (3,) are another place than the first."""
+    away = [between(poses[0], pose) for pose in poses[1:]]
+    return any(np.hypot(*off[:2]) > RIVAL[0] or abs(off[2]) > RIVAL[1] for off in away)

@@ -1,7 +1,8 @@
 """Doubted loops: found where more is doubted than was searched, they are believed when another view says the same.
 
 The best place of a window is not the right one if that lies outside: the next niche of a corridor looks alike. Two
-views of different surface are not deceived in the same way.
+views of different surface are seldom deceived in the same way; they are where every room is the next one's twin, and
+more is doubted than a room is long.
 """
 
 import numpy as np
@@ -31,21 +32,36 @@ class DoubtedLoops:
         newest = graph.recognised(fixed, found)
         # Two views may share the corners that say how far along a corridor they are: surface must say it of one.
         firm = found.firmness >= self.firmness
-        far = [one for one, held in self._waiting if (held or firm) and self._way_from(one.moving) >= self.apart]
-        earlier = next(
-            (one for one in far if agreeing(newest, [one], graph.keyframes, self._drifted(one, newest))), None
-        )
+        asked = [one for one, held in self._waiting if held or firm]
+        earlier = next((one for one in asked if self._another_view(one) and self._alike(one, newest)), None)
         if earlier is None:
             self._waiting += [(newest, firm)] * proposes
             graph.refuse("loop", scans, f"{found.matched:.0%} matched, not yet said by another view")
             return False
-        graph.accept("loop", scans, f"{found.matched:.0%} matched, as said by another view")
+        self._waiting = [(one, held) for one, held in self._waiting if one is not earlier]
+        then = (graph.keyframes[earlier.fixed].scan, graph.keyframes[earlier.moving].scan)
+        graph.accept("loop", then, f"said again by scan {scans[1]}")
+        graph.accept("loop", scans, f"{found.matched:.0%} matched, as said by scan {then[1]}")
         for one in (earlier, newest):
             graph.tie(one.fixed, one.moving, one.pose, one.covariance)
         graph.factors.believe(2)
         graph.factors.solve()
         graph.settle()
         return True
+
+    def _another_view(self, earlier: Recognition) -> bool:
+        """Whether one that waits was seen in the frame of the newest keyframe, and from far enough away."""
+        then, now = self.graph.keyframes[earlier.moving], self.graph.keyframes[-1]
+        frame = self.graph.sessions.root
+        return frame(then.session) == frame(now.session) and np.hypot(*(now.pose - then.pose)[:2]) >= self.apart
+
+    def _alike(self, earlier: Recognition, newest: Recognition) -> bool:
+        """Whether both say the same; how much may have drifted between them is worked out only where they may."""
+        keyframes = self.graph.keyframes
+        return (
+            agreeing(newest, [earlier], keyframes, WIDEST) is not None
+            and agreeing(newest, [earlier], keyframes, self._drifted(earlier, newest)) is not None
+        )
 
     def _drifted(self, earlier: Recognition, newest: Recognition) -> tuple[float, float]:
         """Metres and radians that two true loops may differ, as the drive drifts from one to the other at both ends."""
@@ -58,8 +74,3 @@ class DoubtedLoops:
             )
         metres, radians = np.clip(np.add(LEAST, sigmas * np.sqrt(squares)), LEAST, WIDEST)
         return float(metres), float(radians)
-
-    def _way_from(self, keyframe: int) -> float:
-        """Metres as the crow flies from a keyframe to the newest."""
-        keyframes = self.graph.keyframes
-        return float(np.hypot(*(keyframes[-1].pose - keyframes[keyframe].pose)[:2]))

@@ -41,10 +41,13 @@ class LoopSearch:
         seen = outlook(graph.keyframe_poses, graph.drift, settings)
         asked = candidates(seen, graph.drift, settings)
         tried = self._logbook.answer(lambda: tuple(Tried(one.pose, self._verified(one)) for one in asked))
-        surprise = [self._decided(one, where.covered) for one, where in zip(tried, asked, strict=True)]
-        if any(surprise):
-            return True
-        return self._constellations.find(beyond_search(seen, graph.drift, settings))
+        surprise = False
+        for one, where in zip(tried, asked, strict=True):
+            disagrees = self._decided(one, where.covered)
+            surprise |= disagrees
+            if disagrees and not where.covered:
+                break  # the graph was solved anew: what else was found lies on keyframes that have moved since
+        return surprise or self._constellations.find(beyond_search(seen, graph.drift, settings))
 
     def _decided(self, tried: Tried, covered: bool) -> bool:
         """Tie what was found, at once if all that is doubted was searched; whether it disagrees with the graph."""

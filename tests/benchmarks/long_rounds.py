@@ -24,7 +24,7 @@ from tests.benchmarks.poses import Row, mapped, odometry_of
 from tests.benchmarks.poses import row as figure
 from tests.simulated_drives import world_of
 
-SEEDS = range(10, 15)
+SEEDS = range(20, 25)
 LENGTH, DEPTH, WIDTH = 180.0, 120.0, 2.2  # metres of the block's outer walls, and of the corridor
 CHEAP = replace(LIDAR, max_range=8.0, range_noise=0.02)
 BEARINGS = np.radians(np.arange(-90.0, 91.0))

@@ -171,3 +171,13 @@ def test_a_freed_alignment_doubts_its_place_along_the_corridor_and_knows_the_res
     found = Alignment(np.zeros(3), information, np.empty((0, 2), np.int64), 0.01, 1.0, 0.04)
     covariance = np.linalg.inv(found.freed(0.7).information)
     np.testing.assert_allclose(np.diag(covariance), [1 / 4e4 + 0.49, 1e-6, 1e-6], rtol=1e-6)
+
+
+def test_submaps_are_laid_alike_time_after_time() -> None:
+    rng = np.random.default_rng(0)
+    world = furnished_room(rng)
+    centre = np.array(world.free.centroid.coords[0])
+    poses = [np.array([*(centre + rng.uniform(-0.6, 0.6, 2)), rng.uniform(-3, 3)]) for _ in range(8)]
+    fixed, moving = faces_from(world, poses[:4], rng), faces_from(world, poses[4:], rng).moved(inverse(poses[4]))
+    guess = poses[4] + [0.1, 0.1, 0.03]
+    assert len({register_submaps(moving, fixed, guess, 0.4).tobytes() for _ in range(60)}) == 1

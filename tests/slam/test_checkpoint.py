@@ -12,7 +12,7 @@ import pytest
 
 from backend.estimate import Estimate
 from frontend.scan import Scan
-from slam.checkpoint import CheckpointError, Keeper, resumed
+from slam.checkpoint import FORMAT, CheckpointError, Keeper, resumed
 from slam.logbook import Logbook
 from slam.mapper import Mapper
 from slam.readers.recording import Recording
@@ -160,7 +160,7 @@ def test_a_checkpoint_of_another_run_is_refused_with_the_reason(
         (lambda text: "", "no checkpoint"),
         (lambda text: "hello\n" + text, "no checkpoint"),
         (lambda text: text[: len(text) // 2], "damaged"),
-        (lambda text: text.replace('"format": 1', '"format": 99'), "format 99"),
+        (lambda text: text.replace(f'"format": {FORMAT}', '"format": 99'), "format 99"),
         (lambda text: text.replace('"version": "', '"version": "9.'), "version 9."),
     ],
 )

@@ -1,5 +1,7 @@
 """Doubted loops: one waits, a second that says the same from elsewhere is believed with it, and the drive closes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -35,12 +37,12 @@ def doubted(graph: PoseGraph) -> DoubtedLoops:
     return DoubtedLoops(graph, LoopSettings(), 0.05)
 
 
-def extended(graph: PoseGraph, pose: Floats) -> None:
+def extended(graph: PoseGraph, pose: Floats, session: int = 0) -> None:
     new, step = len(graph.keyframes), between(graph.keyframes[-1].pose, pose)
     graph.factors.add_pose(new, pose)
     graph.factors.add_motion(new - 1, new, step, DRIFT)
     graph.drift.add(new - 1, new, DRIFT)
-    graph.add_keyframe(Keyframe(new, 0, PERCEPT, pose))
+    graph.add_keyframe(Keyframe(new, session, PERCEPT, pose))
 
 
 def seen_from(graph: PoseGraph, fixed: int, ahead: float, lie: float = 0.0, firmness: float = 0.5) -> Alignment:
@@ -64,8 +66,30 @@ def test_two_from_different_places_that_agree_close_the_drive(step: float) -> No
     loops.weigh(5, seen_from(graph, 5, -5.0), proposes=True)
     extended(graph, compose(graph.keyframes[-1].pose, np.array([step, 0.0, 0.0])))
     assert loops.weigh(5, seen_from(graph, 5, step - 5.0), proposes=True)
-    assert [one.accepted for one in graph.decisions] == [False, True]
+    assert [(one.scans[1], one.accepted) for one in graph.decisions] == [(79, False), (79, True), (80, True)]
     np.testing.assert_allclose(graph.keyframe_poses[[79, 80], :2], np.array([[0.0, 0.0], [step, 0.0]]), atol=0.3)
+
+
+def test_a_loop_that_was_believed_confirms_no_other() -> None:
+    graph = out_and_back()
+    loops = doubted(graph)
+    for number, ahead in enumerate((-5.0, -1.0, 3.0)):
+        assert loops.weigh(5, seen_from(graph, 5, ahead), proposes=True) is (number == 1)
+        extended(graph, compose(graph.keyframes[-1].pose, np.array([4.0, 0.0, 0.0])))
+    assert [tie[:2] for tie in graph.factors.loop_residuals()] == [(5, 79), (5, 80)]
+
+
+def test_a_loop_of_another_drive_that_was_never_joined_confirms_none() -> None:
+    graph = out_and_back()
+    loops = doubted(graph)
+    near = replace(seen_from(graph, 5, 0.0), pose_in_fixed=compose(graph.keyframes[-1].pose, np.array([0.3, 0, 0])))
+    loops.weigh(5, near, proposes=True)
+    first = len(graph.keyframes)
+    graph.begin_session(first, PERCEPT)
+    for _ in range(40):
+        extended(graph, compose(graph.keyframes[-1].pose, np.array([1.0, 0.0, 0.0])), session=1)
+    near = replace(near, pose_in_fixed=compose(graph.keyframes[-1].pose, np.array([0.3, 0, 0])))
+    assert not loops.weigh(first + 5, near, proposes=True)
 
 
 @pytest.mark.parametrize(("step", "lie"), [(1.0, 0.0), (5.0, 3.0)])

@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from backend.loop_closure import Candidate
 from frontend.local_map import Faces
 from frontend.registration import Alignment
 from frontend.rigid_motion import compose
 from frontend.scan import Floats
+from slam.doubted_loops import DoubtedLoops
 from slam.keyframes import Keyframe
 from slam.logbook import Logbook
 from slam.loop_search import LoopSearch
@@ -23,6 +25,7 @@ SCAN = drive(round_building(), once_round()[:1], seed=0)[0]
 PERCEPT = perceive(SCAN, FrontendSettings())
 BLIND = perceive(replace(SCAN, ranges=np.full(SCAN.ranges.size, np.inf)), FrontendSettings())
 ROUND = 36  # keyframes of a full circle
+WIDE = Candidate(5, 6.0, 0.6, covered=False)
 SURE = np.diag([0.02, 0.02, 0.005]) ** 2
 
 
@@ -122,3 +125,14 @@ def test_a_run_that_goes_on_reads_the_answers_of_the_first_and_asks_nobody() -> 
     assert search(again, answers, Logbook(logbook.lines)).close_loops()
     assert again.decisions == first.decisions
     assert not answers.windows
+
+
+def test_when_a_doubted_loop_solved_the_graph_what_was_found_before_is_not_tied_to_where_poses_are_now(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    graph = ring(ROUND)
+    loops = search(graph, Answers(np.zeros(3)))
+    monkeypatch.setattr("slam.loop_search.candidates", lambda *_: [WIDE, replace(WIDE, pose=6, covered=True)])
+    monkeypatch.setattr(DoubtedLoops, "weigh", lambda *_, **__: True)
+    assert loops.close_loops()
+    assert not graph.factors.loop_residuals()
