@@ -8,7 +8,7 @@ Poses of a sonar: `arcs`, `arc_association`, `arc_births`, `arc_landmarks`, `dou
 Views pulled together: `settling`, `shared_lines`, `wall_directions`, `settled_poses`.
 Merging: `polygon_merging` (the verb), `cell_lines`, `wall_faces`, `snapping`, `evidence`, `far_ground`, `grazing`,
 `contours`.
-The map: `room_map` (the noun), `map_reading`, `provenance`, `along_edges`, `leak_repair`, `leak_alarm`,
+The map: `room_map` (the noun), `map_reading`, `provenance`, `along_edges`, `leak_repair`, `leak_alarm`, `seen_through`,
 `hidden_objects`, `occluders`, `doors`, `door_walls`, `decisions`.
 From the map on: `next_view`, `thin_rectangles`.
 """

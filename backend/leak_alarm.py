@@ -11,20 +11,20 @@ from shapely import MultiPolygon
 
 from backend.leak_repair import BIN, FaceBins, leaking
 from backend.samples import Samples
-from backend.sight import Sight
+from backend.seen_through import Beams, seers
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
 def alarms(
-    free: MultiPolygon, bins: FaceBins, samples: Samples, sight: Sight, depth: float
+    free: MultiPolygon, bins: FaceBins, samples: Samples, beams: Beams, depth: float
 ) -> tuple[Floats, tuple[tuple[Ints, Ints], ...]]:
     """Middles (l, 2) of the pieces of face deeper than `depth` metres inside the free space, and of each piece the
     views that measured it and those that saw through it, by row."""
     found = leaking(free, bins, depth)
     surface = cKDTree(samples.points)
-    point, seer = sight.pairs(found.middles - depth * found.normals)
+    point, seer = seers(found, bins, beams, depth)
     views = []
     for number, (middle, normal) in enumerate(zip(found.middles, found.normals, strict=True)):
         near = np.array(surface.query_ball_point(middle, 0.5 * BIN + depth), dtype=np.int64)

@@ -14,7 +14,6 @@ from backend.cell_lines import distinct_views
 from backend.contours import as_polygons
 from backend.evidence import Counts
 from backend.samples import Samples
-from backend.sight import Sight
 from backend.wall_faces import WallFaces
 
 Floats = NDArray[np.float64]
@@ -67,13 +66,6 @@ def standing(bins: FaceBins, through: Ints, share: float = 0.5) -> NDArray[np.bo
     The others saw through (b,).
     """
     return np.asarray((1 - share) * bins.support > share * through)
-
-
-def seen_through(bins: FaceBins, sight: Sight, depth: float) -> Ints:
-    """How many views (b,) saw from the front to `depth` metres behind each bin."""
-    point, view = sight.pairs(bins.middles - depth * bins.normals)
-    ahead = np.sum((sight.origins[view] - bins.middles[point]) * bins.normals[point], axis=1) > 0
-    return np.bincount(point[ahead], minlength=len(bins.support))
 
 
 def closed(mask: NDArray[np.bool_], bins: FaceBins, counts: Counts, depth: float) -> NDArray[np.bool_]:

@@ -16,10 +16,11 @@ from backend.evidence import Counts
 from backend.far_ground import far_ground
 from backend.hidden_objects import ObjectSettings, apart_from, objects_in, without_slivers
 from backend.leak_alarm import alarms, why
-from backend.leak_repair import closed, open_bins, repaired, seen_through, standing, supported_bins
+from backend.leak_repair import closed, open_bins, repaired, standing, supported_bins
 from backend.provenance import boundary_edges, label_edges
 from backend.room_map import Decision, MapEdge, Obstacle, RoomMap, Verdict
 from backend.samples import Samples
+from backend.seen_through import beams_of, seen_through
 from backend.sight import Sight, sight_of
 from backend.snapping import snap_ring
 from backend.wall_faces import WallFaces
@@ -52,6 +53,7 @@ class PlacedViews:
     index: (v,). rings: each (m, 2), counter-clockwise, of what is surely free; far: by row, the same ring up to its
     bounds, of views with a wide beam; aside: (n,) metres the surface of each sample may lie to its side;
     reals: each (m,), edge i to i + 1 was measured.
+    readings: each (m, 2), where the thin beams ended, (0, 2) of a view with a wide beam.
     origins: (v, 2). openings: each (d, 2, 2) jambs the infrared reported.
     """
 
@@ -60,6 +62,7 @@ class PlacedViews:
     far: dict[int, Floats]
     aside: Floats
     reals: list[NDArray[np.bool_]]
+    readings: list[Floats]
     origins: Floats
     openings: list[Floats]
 
@@ -70,7 +73,8 @@ def read_map(
     """The room map that the votes, the faces and the placed samples (rows of views) tell."""
     sight = sight_of(views.rings, views.origins)
     measured = supported_bins(samples, faces)
-    through = seen_through(measured, sight, settings.panel)
+    beams = beams_of(sight, views.readings)
+    through = seen_through(measured, beams, settings.panel)
     bins = measured.where(standing(measured, through))
     contested = measured.where(standing(measured, through, settings.contested))
     mask = counts.free > counts.wall
@@ -87,7 +91,7 @@ def read_map(
     safety = as_polygons(free.buffer(-settings.inset, join_style="mitre", mitre_limit=SQUARE))
     deep = round(settings.deep / counts.cell)
     decided = Decisions(partial(_decisions, views, (mask, counts, deep), sight, (edges, objects)))
-    leaks, told = alarms(free, contested, samples, sight, settings.panel)
+    leaks, told = alarms(free, contested, samples, beams, settings.panel)
     reasons = tuple(why(views.index[measuring], views.index[through]) for measuring, through in told)
     room_map = RoomMap(free, safety, edges, doors, objects, leaks, decided, reasons)
     return _by_index(room_map, views.index)

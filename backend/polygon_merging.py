@@ -143,6 +143,7 @@ class Merger:
             far,
             np.concatenate([placed.surfaces.aside for _, placed in everyone]),
             [placed.surfaces.real for _, placed in everyone],
+            [_readings(placed.view, pose) for (_, placed), pose in zip(everyone, poses, strict=True)],
             self._origins(poses),
             openings,
         )
@@ -212,6 +213,11 @@ class Merger:
             np.concatenate([s.weight for s in surfaces]),
             np.concatenate([s.sure & (s.sigma <= self.settings.wall_strip) for s in surfaces]),
         )
+
+
+def _readings(view: View, pose: Floats) -> Floats:
+    """Where the thin beams of a view ended, placed (m, 2); none of a wide beam."""
+    return place(view.boundary if view.wide is None else view.boundary[:0], pose)
 
 
 def merge_views(views: Iterable[View], poses: Floats, settings: MergeSettings | None = None) -> RoomMap:

@@ -1,9 +1,12 @@
 """Samples and settled views of known plans, for the tests of faces and of settling."""
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from backend.samples import Samples
+from backend.seen_through import Beams, beams_of
+from backend.sight import sight_of
 from backend.surfaces import surfaces_of
 from backend.view import View
 
@@ -47,3 +50,9 @@ def joined(*parts: Samples) -> Samples:
         np.concatenate([part.weight for part in parts]),
         np.concatenate([part.sure for part in parts]),
     )
+
+
+def beams_to(rings: list[Floats], origins: Floats) -> Beams:
+    """Beams from origins (v, 2) that end every 5 cm or closer on the rings (m, 2)."""
+    dense = [shapely.get_coordinates(shapely.segmentize(shapely.Polygon(ring), 0.05))[:-1] for ring in rings]
+    return beams_of(sight_of(rings, origins), dense)

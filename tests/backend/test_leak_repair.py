@@ -3,11 +3,11 @@
 import numpy as np
 from shapely import MultiPolygon, box
 
-from backend.leak_repair import leaking, repaired, seen_through, standing, supported_bins
+from backend.leak_repair import leaking, repaired, standing, supported_bins
 from backend.polygon_merging import merge_views
-from backend.sight import sight_of
+from backend.seen_through import seen_through
 from backend.wall_faces import FaceSettings, fuse_faces
-from tests.backend.placed_samples import wall_samples
+from tests.backend.placed_samples import beams_to, wall_samples
 from tests.backend.plan_rays import Plan, Rays, view_of
 
 FACE = (np.array([0.0, 0.0]), np.array([2.0, 0.0]))
@@ -20,9 +20,9 @@ def test_a_face_stands_unless_more_views_saw_through_it_from_the_front() -> None
     bins = supported_bins(samples, fuse_faces(samples, FaceSettings()))
     assert set(bins.support) == {3}
     front, behind = np.array([1.0, 0.8]), np.array([1.0, -0.5])
-    through_twice = sight_of([THROUGH] * 2, np.array([front, front]))
-    through_often = sight_of([THROUGH] * 5, np.tile(front, (5, 1)))
-    from_behind = sight_of([THROUGH] * 5, np.tile(behind, (5, 1)))
+    through_twice = beams_to([THROUGH] * 2, np.array([front, front]))
+    through_often = beams_to([THROUGH] * 5, np.tile(front, (5, 1)))
+    from_behind = beams_to([THROUGH] * 5, np.tile(behind, (5, 1)))
     assert standing(bins, seen_through(bins, through_twice, 0.05)).all()
     assert not standing(bins, seen_through(bins, through_often, 0.05)).any()
     assert standing(bins, seen_through(bins, from_behind, 0.05)).all()
