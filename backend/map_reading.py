@@ -20,7 +20,7 @@ from backend.leak_repair import closed, open_bins, repaired, standing, supported
 from backend.provenance import boundary_edges, label_edges
 from backend.room_map import Decision, MapEdge, Obstacle, RoomMap, Verdict
 from backend.samples import Samples
-from backend.seen_through import beams_of, seen_through
+from backend.seen_through import beams_of, met, seen_through
 from backend.sight import Sight, sight_of
 from backend.snapping import snap_ring
 from backend.wall_faces import WallFaces
@@ -76,7 +76,8 @@ def read_map(
     beams = beams_of(sight, views.readings)
     through = seen_through(measured, beams, settings.panel)
     bins = measured.where(standing(measured, through))
-    contested = measured.where(standing(measured, through, settings.contested))
+    known = met(measured, beams)
+    contested = known.where((known.support >= 2) & standing(known, through, settings.contested))
     mask = counts.free > counts.wall
     mask = closed(mask, bins.where(open_bins(bins, mask, counts)), counts, settings.panel)
     mask |= _far_ground(views, samples, mask, counts, settings.roomy)

@@ -4,7 +4,7 @@ Far out the beams of a scan stand farther apart than pillars and door jambs are 
 bracket metres of wall: the free space drawn between two readings is a guess, and no view contradicts what stands there.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,6 +67,22 @@ def seers(pieces: FaceBins, among: FaceBins, beams: Beams, depth: float) -> tupl
 def seen_through(bins: FaceBins, beams: Beams, depth: float) -> Ints:
     """How many views (b,) saw from the front to `depth` metres behind each bin."""
     return np.bincount(seers(bins, bins, beams, depth)[0], minlength=len(bins.support))
+
+
+def met(bins: FaceBins, beams: Beams) -> FaceBins:
+    """The bins, supported only by views whose beams ended there: what is drawn between two readings nobody measured.
+
+    Wide beams leave no gaps between them: with any, the bins stay as they are.
+    """
+    number = np.diff(beams.first)
+    if not number.all():
+        return bins
+    view = np.repeat(np.arange(len(number)), number)
+    way = np.stack([np.cos(beams.bearing), np.sin(beams.bearing)], axis=1)
+    readings = cKDTree(beams.sight.origins[view] + beams.reach[:, None] * way)
+    near = readings.query_ball_point(bins.middles, BIN)
+    support = np.array([len(np.unique(view[which])) for which in near], dtype=np.int64)
+    return replace(bins, support=np.minimum(support, bins.support))
 
 
 def _passed(pieces: FaceBins, view: Ints, seen: tuple[FaceBins, Beams], depth: float) -> NDArray[np.bool_]:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from backend.leak_repair import FaceBins
-from backend.seen_through import beams_of, seen_through
+from backend.seen_through import beams_of, met, seen_through
 from backend.sight import sight_of
 
 ORIGIN = np.array([[0.0, 2.0]])
@@ -53,3 +53,10 @@ def test_bearings_meet_behind_the_back_of_a_view() -> None:
 
 def test_a_wide_beam_is_taken_at_its_word() -> None:
     assert counted(bins_at(1.0)) == [1]
+
+
+def test_only_readings_on_a_piece_support_it() -> None:
+    sight = sight_of([BOX, BOX], np.repeat(ORIGIN, 2, axis=0))
+    bins, near = bins_at(1.0, 2.0, 3.0), np.array([[1.02, 0.01], [3.0, 0.0]])
+    assert met(bins, beams_of(sight, [near, near[:1]])).support.tolist() == [2, 0, 1]
+    assert met(bins, beams_of(sight, [near, near[:0]])).support.tolist() == [2, 2, 2]
