@@ -10,6 +10,7 @@ from collections import deque
 from dataclasses import dataclass
 from math import cos, hypot, sin
 from statistics import median
+from typing import NamedTuple
 
 import numpy as np
 from filterpy.kalman import KalmanFilter
@@ -46,6 +47,15 @@ class Move:
 
     pose: Floats
     covariance: Floats
+
+
+class _Compared(NamedTuple):
+    """A registered move against the wheels' claim: squared Mahalanobis distance, residual (3,), and the
+    covariance (3, 3) of both."""
+
+    distance: float
+    residual: Floats
+    noise: Floats
 
 
 class Odometry:
@@ -107,9 +117,15 @@ class Odometry:
         """The last scan stands where moves are told from again."""
         self._steady.arrive()
 
-    def slide(self) -> None:
-        """The last move is known but for how far it went, along a corridor: it teaches nothing."""
+    def slide(self, wheels: Floats, registered: Move) -> None:
+        """The last move is known but for how far it went, along a corridor: it teaches nothing.
+
+        Wheels that were right before are asked again if they claim a move which it allows; one more slip ends that.
+        """
         self._steady.slide()
+        asked_again = self.broken and self.proven and self._claims_a_move(wheels)
+        if asked_again and self._compared(wheels, registered).distance <= self.settings.slip_gate:
+            self._slips = self.settings.slips - 1
 
     @property
     def _lost(self) -> Floats:
@@ -120,21 +136,32 @@ class Odometry:
 
         Over `slip_gate` it taught nothing of the wheels.
         """
+        distance, residual, noise = self._compared(wheels, registered)
+        self._steady.see(registered.pose, seconds)
+        if distance > self.settings.slip_gate:
+            self._slips += 1
+            return distance
+        if self._claims_a_move(wheels):
+            self._slips, self.proven = 0, True
+        # The constants act on what was claimed, noise and all. Learnt against that, a straight drive of noisy turns
+        # would teach that turns mean nothing (regression dilution): they are learnt against the move that was made.
+        _, made = self._moved(registered.pose)
+        self._filter.update(residual[:, None] + made @ self._filter.x, R=noise, H=made)
+        return distance
+
+    def _claims_a_move(self, wheels: Floats) -> bool:
+        """Only wheels that do, and rightly, work: those that are stuck are right about a standing robot."""
+        settings = self.settings
+        return bool(hypot(wheels[0], wheels[1]) > settings.least_distance or abs(wheels[2]) > settings.least_turn)
+
+    def _compared(self, wheels: Floats, registered: Move) -> "_Compared":
+        """How far a registered move is from what the wheels claim."""
         predicted, jacobian = self._moved(wheels)
         residual = registered.pose - predicted
         residual[2] = np.arctan2(np.sin(residual[2]), np.cos(residual[2]))
         noise = self._noise(wheels) + registered.covariance
         distance = float(residual @ np.linalg.solve(jacobian @ self._filter.P @ jacobian.T + noise, residual))
-        self._steady.see(registered.pose, seconds)
-        if distance > self.settings.slip_gate:
-            self._slips += 1
-        elif np.hypot(*wheels[:2]) > self.settings.least_distance or abs(wheels[2]) > self.settings.least_turn:
-            # Only wheels that claim a move, and rightly, work: those that are stuck are right about a standing robot.
-            self._slips, self.proven = 0, True
-        if distance <= self.settings.slip_gate:
-            measured = residual[:, None] + jacobian @ self._filter.x
-            self._filter.update(measured, R=noise, H=jacobian)
-        return distance
+        return _Compared(distance, residual, noise)
 
     def _moved(self, wheels: Floats) -> tuple[Floats, Floats]:
         """The corrected move (3,) of the registered point and its derivative (3, 5) with respect to the constants."""

@@ -18,7 +18,7 @@ from slam.perception import FrontendSettings, Percept, perceive
 from slam.pose_graph import PoseGraph
 from slam.session_search import SessionSearch
 from slam.sonar_mapping import SonarMapping
-from slam.tracking import Placed, track
+from slam.tracking import Placed, track, turned
 from slam.wheels import Wheels
 
 
@@ -135,7 +135,8 @@ class Mapper:
             odometry.lose()
         elif placed.slid is not None:
             self._graph.refuse("registration", (index - 1, index), placed.slid)
-            odometry.slide()
+            moved = between(last, placed.pose)
+            odometry.slide(wheels, Move(moved, turned(placed.measured, moved[2])))
             self._wheels.slip(index)
         elif gap is None:
             slipped = self._wheels.learn(wheels, between(last, placed.pose), placed, seconds)

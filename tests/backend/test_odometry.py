@@ -221,3 +221,37 @@ def test_stuck_wheels_are_not_believed_again_while_the_robot_stands() -> None:
     assert odometry.broken
     odometry.learn(np.array([0.3, 0.0, 0.0]), Move(np.array([0.3, 0.0, 0.0]), REGISTERED))
     assert not odometry.broken
+
+
+def test_noisy_turns_of_a_long_straight_drive_do_not_teach_that_turns_mean_nothing() -> None:
+    rng = np.random.default_rng(0)
+    odometry = Odometry(SETTINGS)
+    for _ in range(600):
+        made = driven_arc(0.4, float(rng.normal(0, 0.002)))
+        felt = driven_arc(0.4 * (1 + 0.05 * rng.normal()), made[2] + 0.015 * float(rng.normal()))
+        odometry.learn(felt, Move(made, REGISTERED))
+    assert odometry.calibration[1] == pytest.approx(1.0, abs=0.02)
+    corner = driven_arc(0.4, 0.6)
+    assert odometry.learn(corner, Move(corner, REGISTERED)) < SETTINGS.slip_gate
+
+
+def unbelieved(odometry: Odometry) -> Odometry:
+    """Its wheels were wrong so often in a row that they are not asked."""
+    for _ in range(SETTINGS.slips):
+        odometry.learn(np.array([0.5, 0.0, 0.0]), Move(np.zeros(3), REGISTERED))
+    assert odometry.broken
+    return odometry
+
+
+@pytest.mark.parametrize(("claimed", "broken"), [(0.4, False), (0.0, True)])
+def test_where_a_robot_slides_wheels_that_were_right_before_are_asked_again_if_they_claim_a_move(
+    claimed: float, broken: bool
+) -> None:
+    along = Move(np.array([0.6, 0.0, 0.0]), np.diag([0.5, 0.01, 0.002]) ** 2)
+    odometry = Odometry(SETTINGS)
+    odometry.learn(np.array([0.3, 0.0, 0.0]), Move(np.array([0.3, 0.0, 0.0]), REGISTERED))
+    unbelieved(odometry).slide(np.array([claimed, 0.0, 0.0]), along)
+    assert odometry.broken is broken
+    never_right = unbelieved(Odometry(SETTINGS))
+    never_right.slide(np.array([0.4, 0.0, 0.0]), along)
+    assert never_right.broken
