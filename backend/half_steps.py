@@ -1,9 +1,7 @@
 """Half steps: where a surface ends between two beams, one of which met it while the next went past.
 
 The chord from the near reading to the far one would give away the whole step right behind the near one, and with it
-the ends of walls: door jambs shrink by up to a beam's width. Either beam speaks for half the step between them. But
-behind the chord nothing was seen: a corridor's wall, met aslant by both, lies along it, and half a step as far out as
-the far reading would open half a metre of ground behind that wall at 50 m.
+the ends of walls: door jambs shrink by up to a beam's width. Either beam speaks for half the step between them.
 """
 
 import numpy as np
@@ -15,10 +13,7 @@ Floats = NDArray[np.float64]
 
 
 def by_half_steps(view: View) -> View:
-    """The view with its jumps in depth drawn half a step aside of the near reading, and no deeper than the chord there.
-
-    A view of a wide beam stays as it is.
-    """
+    """The view with its jumps in depth drawn half a step aside of either reading; one of a wide beam stays as it is."""
     if view.wide is not None:
         return view
     here = view.boundary - view.origin
@@ -29,9 +24,8 @@ def by_half_steps(view: View) -> View:
     edge = np.flatnonzero(jump)
     first, second = ranges[0][edge, None], ranges[1][edge, None]
     halfway = here[edge] / first + there[edge] / second
-    length = np.linalg.norm(halfway, axis=1, keepdims=True)
-    halfway, chord = halfway / length, first * second * length / (first + second)
-    step = view.origin + np.stack([np.minimum(first, chord) * halfway, np.minimum(second, chord) * halfway], axis=1)
+    halfway /= np.linalg.norm(halfway, axis=1, keepdims=True)
+    step = view.origin + np.stack([first * halfway, second * halfway], axis=1)
     spread = np.stack([view.spread[edge], np.roll(view.spread, -1)[edge]], axis=1)
     after = np.repeat(edge + 1, 2)
     return View(

@@ -15,21 +15,9 @@ def test_a_jump_in_depth_stands_halfway_between_its_two_beams() -> None:
     stepped = by_half_steps(View(RING, KINDS, np.full(5, 0.02), np.zeros(2), np.empty((0, 2, 2))))
     bearings, ranges = np.arctan2(*stepped.boundary.T[::-1]), np.hypot(*stepped.boundary.T)
     np.testing.assert_allclose(bearings[2:4], 0.5 * (bearings[1] + bearings[4]))
-    near, far = stepped.boundary[[1, 4]]
-    np.testing.assert_allclose(ranges[2], ranges[1])
-    (x, y), (along, across) = stepped.boundary[3] - near, far - near
-    np.testing.assert_allclose(x * across, y * along)
+    np.testing.assert_allclose(ranges[2:4], ranges[[1, 4]])
     assert stepped.edges.tolist() == [0, 1, 1, 1, 0, 0, 0]
     np.testing.assert_array_equal(np.delete(stepped.boundary, [2, 3], axis=0), RING)
-
-
-def test_nothing_is_free_behind_the_wall_of_a_long_corridor() -> None:
-    bearings = np.radians(np.arange(-90, 91))
-    ranges = np.minimum(1.0 / np.maximum(np.abs(np.sin(bearings)), 1e-9), 60.0)
-    ring = np.vstack([[-0.5, 0.0], ranges[:, None] * np.stack([np.cos(bearings), np.sin(bearings)], axis=1)])
-    kinds = np.where(np.arange(len(ring)) % 90 == 0, EdgeKind.SIDE, EdgeKind.OCCLUSION).astype(np.uint8)
-    view = View(ring, kinds, np.full(len(ring), 0.02), np.zeros(2), np.empty((0, 2, 2)))
-    assert np.abs(by_half_steps(view).boundary[:, 1]).max() < 1 + 1e-9
 
 
 def test_a_wide_beam_keeps_its_chords() -> None:
