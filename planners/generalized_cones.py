@@ -38,9 +38,7 @@ class ConesSettings:
     crowding: float = 0.2  # a cone needs a place where no wall is nearer than this share of its own; larger: fewer
     caution: float = 1.0  # extra cost per metre in the tightest passages; larger goes farther to stay clear of walls
     entrances: int = 16  # spines tried from start and goal; larger finds more and asks more time of every query
-    shortcuts: int = (
-        0  # straight motions tried to shorten a path; any leaves the middle of free space, larger is shorter
-    )
+    shortcuts: int = 0  # straight motions tried to shorten a path; larger is shorter, and leaves the middle
     turn_cost: float = 0.1  # metres per radian while shortening; larger avoids turning
 
 

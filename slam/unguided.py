@@ -33,7 +33,7 @@ class UnguidedSettings:
     score: float = 0.25  # of the search; larger is faster and gives up new ground
     sector: float = 0.25  # radians to each side that are searched as one; larger is faster and sees fewer rivals
     # In its place a scan reaches 1.5 of 2 in 99 of 100 cases. Elsewhere the best of a window of 1.5 m reaches 1.0 in 40
-    # and 1.4 in 13 of 100, that of a window of 3 m 1.4 in 22 (office corridors): more is needed where more was tried.
+    # and 1.4 in 13 of 100, that of a window of 3 m 1.4 in 22 (Intel's corridors): more is needed where more was tried.
     believed: float = 1.0  # least fit in a window of `believed_metres`; larger gives up where much ground is new
     believed_metres: float = 1.5
     certain: float = 1.6  # fit for which wheels that were never right before are wrong; 4 in 100 reach it elsewhere

@@ -18,16 +18,15 @@ from scipy.spatial import cKDTree
 from backend.estimate import Estimate
 from backend.polygon_merging import merge_views
 from frontend.local_map import Faces
-from frontend.rigid_motion import transform
 from frontend.scan import Floats, Scan
 from slam.mapper import Mapper
 from slam.mapper_settings import MapperSettings
 from slam.recordings import open_recording
+from slam.scores.results import scaled_to
 from slam.scores.trajectories import (
     Spread,
     Track,
     absolute_errors,
-    align,
     nearest_in_time,
     read_relations,
     relation_errors,
@@ -174,13 +173,6 @@ def lagging_rmse(scans: Sequence[Scan], poses: Floats, reference: Floats, lag: f
     seen = (times > reference[0, 0]) & (times < reference[-1, 0])
     true = np.column_stack([np.interp(times[seen], reference[:, 0], reference[:, axis]) for axis in (1, 2)])
     return Spread.of(absolute_errors(scaled_to(poses[seen, :2], true), true)).rmse
-
-
-def scaled_to(estimated: Floats, true: Floats) -> Floats:
-    """Positions (n, 2) stretched about the origin to the scale that fits the true ones best (Umeyama 1991)."""
-    turned = transform(estimated - estimated.mean(axis=0), np.array([0.0, 0.0, align(estimated, true)[2]]))
-    scale = np.sum(turned * (true - true.mean(axis=0))) / np.sum(turned**2)
-    return np.asarray(scale * estimated)
 
 
 def closure_rows(path: Path) -> list[Row]:

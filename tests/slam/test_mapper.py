@@ -207,8 +207,9 @@ def test_scans_of_a_robot_that_stands_share_one_keyframe() -> None:
     assert np.max(np.abs(standing.poses[:, :2])) < 0.02
 
 
-def test_no_loop_is_closed_on_a_scan_that_saw_nothing(scans: list[Scan]) -> None:
+def test_no_loop_is_closed_on_a_scan_that_saw_nothing() -> None:
+    scans = drive(round_building(), once_round(beyond=6.0), seed=1)
     blind = replace(scans[0], ranges=np.full(scans[0].ranges.size, np.inf))
     closed = loops(mapped([blind, *scans[1:]]))
-    assert closed
+    assert len(closed) >= 3
     assert all(0 not in pair for pair in closed)
