@@ -20,6 +20,9 @@ def main() -> None:
     wanted = sys.argv[1].replace("-", "_") if len(sys.argv) > 1 else ""
     try:
         command_line(wanted)()
+    except KeyboardInterrupt:
+        err.print("roomsketch: stopped before it began")  # a command that has begun says itself where it stopped
+        sys.exit(130)
     except Exception as failure:
         if not is_foreseen(failure):
             raise

@@ -49,3 +49,9 @@ def test_an_unknown_command_is_bad_usage() -> None:
     told = run("mrge")
     assert told.code == 2
     assert "No such command 'mrge'" in told.err
+
+
+def test_who_stops_it_while_it_loads_reads_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("slam.cli.import_module", Mock(side_effect=KeyboardInterrupt))
+    told = run("merge", "drive.log")
+    assert (told.code, told.err) == (130, "roomsketch: stopped before it began\n")
